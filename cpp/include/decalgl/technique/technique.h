@@ -1,0 +1,102 @@
+// The contract between a frame and the ways to drape vectors over a terrain.
+//
+//     layers ─▶ preprocess ─▶ Prepared ─▶ upload ─▶ update(view) ─▶ draw, draw_ids
+//               any thread     plain        GL thread from here on
+//               no GL          arrays
+//
+// Threads: `preprocess` and `Prepared::query` may run on any thread and touch no GL; Prepared is never changed
+// once made, so several renderers may share it. Everything else is called on the thread that holds the context.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "decalgl/core/memory.h"
+#include "decalgl/core/progress.h"
+#include "decalgl/vector/layer.h"
+#include "decalgl/vector/position_grid.h"
+
+namespace decalgl::gl {
+class Framebuffer;
+class ProgramLibrary;
+class Texture2D;
+}  // namespace decalgl::gl
+
+namespace decalgl {
+
+// A feature as the user knows it: the layer's place in the scene and the feature's place in the layer.
+struct FeatureReference {
+    uint32_t layer = 0;
+    uint32_t feature = 0;
+};
+
+// What a technique is given to prepare: a run of neighbouring layers of one scene.
+struct TechniqueInput {
+    Span<const Layer> layers;
+    uint32_t first_layer = 0;  // place of layers[0] in the scene
+    Bounds bounds;             // of the terrain: nothing outside is ever seen
+    PositionGrid positions;
+    unsigned threads = 0;      // 0: all cores
+    MemoryAccount memory;
+};
+
+struct PreparedCounts {
+    uint64_t features = 0;
+    uint64_t segments = 0;  // edges and line segments in the input
+    uint64_t pieces = 0;    // what they became
+    uint64_t bytes = 0;
+    double quantum = 0.0;   // metres: how far a vertex may have moved
+};
+
+class Prepared {
+  public:
+    virtual ~Prepared() = default;
+    virtual PreparedCounts counts() const = 0;
+    // The feature behind an id that draw_ids wrote, less one.
+    virtual FeatureReference feature(uint32_t id) const = 0;
+    // Every feature at a map position in the scene's coordinates, topmost first.
+    virtual std::vector<FeatureReference> query(double x, double y) const = 0;
+};
+
+enum class Antialias { none, coverage };
+
+// Where the camera looks; the uniform block of every pass is bound already (shaders/shared/view_block.h).
+struct View {
+    int width = 0;   // of the whole picture, in pixels
+    int height = 0;
+    PositionGrid positions;
+    Antialias antialias = Antialias::none;
+};
+
+// The surface seen at each pixel. position: block x, y and the bits of offset x, y (shaders/shared/position.glsl).
+// surface: terrain gradient, distance along the pixel's ray.
+struct GBufferView {
+    const gl::Texture2D* position = nullptr;
+    const gl::Texture2D* surface = nullptr;
+};
+
+struct UpdateReport {
+    uint64_t pieces = 0;
+    uint64_t bytes = 0;  // of GL memory held by the technique
+};
+
+class Technique {
+  public:
+    virtual ~Technique() = default;
+    virtual std::string name() const = 0;
+    virtual std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input, Progress& progress) const = 0;
+    virtual void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) = 0;
+    virtual UpdateReport update(const View& view) = 0;
+    // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture.
+    virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;
+    // Writes 1 + id of the topmost feature at each pixel's centre, 0 where there is none.
+    virtual void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;
+};
+
+// The techniques by name. Throws Error(input), which lists the names there are, for another one.
+std::unique_ptr<Technique> make_technique(const std::string& name);
+std::vector<std::string> technique_names();
+
+}  // namespace decalgl

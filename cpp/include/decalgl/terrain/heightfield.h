@@ -1,0 +1,53 @@
+// A heightfield: samples on a regular grid and the exact surface over them.
+//
+//     NW ────── NE      Each quad of samples is two triangles, split from its north-western to its
+//     │ ╲        │      south-eastern sample. The surface ends at the outer samples. A triangle with a
+//     │    ╲     │      missing sample is a hole.
+//     SW ────── SE
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "decalgl/vector/position_grid.h"
+
+namespace decalgl {
+
+class Heightfield {
+  public:
+    Heightfield() = default;
+
+    // heights[row * columns + column] in metres, row 0 the northernmost, NaN where there is none. Sample (0, 0) lies at
+    // (x0, y0); columns go east by dx, rows south by dy, both positive. Throws Error(input).
+    Heightfield(std::vector<float> heights, int32_t rows, int32_t columns, double x0, double y0, double dx, double dy);
+
+    // Level ground at one height.
+    static Heightfield flat(const Bounds& bounds, float height);
+
+    // The same samples with heights times `factor`, rounded to float32: that is the surface drawn.
+    Heightfield exaggerated(double factor) const;
+
+    int32_t rows() const { return rows_; }
+    int32_t columns() const { return columns_; }
+    double x0() const { return x0_; }
+    double y0() const { return y0_; }
+    double dx() const { return dx_; }
+    double dy() const { return dy_; }
+    const std::vector<float>& heights() const { return *heights_; }
+    float height(int32_t row, int32_t column) const {
+        return (*heights_)[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)];
+    }
+    Bounds bounds() const;
+
+  private:
+    std::shared_ptr<const std::vector<float>> heights_;
+    int32_t rows_ = 0;
+    int32_t columns_ = 0;
+    double x0_ = 0.0;
+    double y0_ = 0.0;
+    double dx_ = 1.0;
+    double dy_ = 1.0;
+};
+
+}  // namespace decalgl

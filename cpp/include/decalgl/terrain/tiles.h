@@ -1,0 +1,34 @@
+// Tiles of a heightfield and how far each of their levels of detail is off.
+//
+// Level l takes every 2^l-th sample. Triangulations of neighbouring levels nest, so the largest vertical distance
+// between a coarse surface and the full one is found at the samples.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "decalgl/terrain/heightfield.h"
+
+namespace decalgl {
+
+constexpr int32_t tile_quads = 64;
+constexpr int tile_levels = 7;  // 64 quads down to 1
+
+struct TerrainTile {
+    int32_t column = 0;  // first sample
+    int32_t row = 0;
+    float lowest = 0.0F;
+    float highest = 0.0F;
+    std::array<float, tile_levels> error{};  // metres; infinite where the level would move the rim of a hole
+};
+
+struct TerrainTiles {
+    int32_t columns = 0;
+    int32_t rows = 0;
+    bool has_holes = false;
+    std::vector<TerrainTile> tiles;  // row by row; lowest > highest marks one without a triangle
+
+    static TerrainTiles over(const Heightfield& heightfield, unsigned threads);
+};
+
+}  // namespace decalgl

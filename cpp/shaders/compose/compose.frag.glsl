@@ -1,0 +1,39 @@
+// The picture: the overlay over the shaded terrain, or the sky. "Over" on sRGB values, as map tools do.
+//
+// OVERLAY   a layer was drawn
+#include "shared/position.glsl"
+#include "shared/ray.glsl"
+
+layout(location = 0) out vec4 color;
+
+uniform usampler2D position_texture;
+uniform sampler2D surface_texture;
+uniform sampler2D base_texture;
+#ifdef OVERLAY
+uniform sampler2D overlay_texture;
+#endif
+uniform float layer_shading;
+uniform vec4 sky_low;   // straight alpha; at the horizon
+uniform vec4 sky_high;  // 45 degrees above it
+
+vec4 sky() {
+    vec3 direction = ray_direction_at(pixel_from_centre());
+    float rise = clamp(direction.z / max(length(direction.xy), 1e-6), 0.0, 1.0);
+    vec4 straight = mix(sky_low, sky_high, sqrt(rise));
+    return straight;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    if (is_sky(unpack_position(texelFetch(position_texture, pixel, 0)))) {
+        color = sky();
+        return;
+    }
+    float shade = texelFetch(surface_texture, pixel, 0).w;
+    color = vec4(clamp(texelFetch(base_texture, pixel, 0).rgb * shade, 0.0, 1.0), 1.0);
+#ifdef OVERLAY
+    vec4 overlay = texelFetch(overlay_texture, pixel, 0);
+    vec3 lit = clamp(overlay.rgb * mix(1.0, shade, layer_shading), 0.0, overlay.a);
+    color.rgb = lit + (1.0 - overlay.a) * color.rgb;
+#endif
+}

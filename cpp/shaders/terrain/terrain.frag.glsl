@@ -1,0 +1,92 @@
+// The G-buffer: where each pixel's ray meets the plane of the triangle that covers it.
+//
+// The position is solved and not interpolated, since interpolated attributes carry the rasteriser's 1/256 of a pixel,
+// which near the horizon is metres. A triangle seen edge-on may cover a pixel whose ray meets its plane far away:
+// the distance is kept within that of its corners.
+//
+// HOLES   the terrain has missing samples
+// RAMP    colours by height
+#include "terrain/mesh.glsl"
+#include "shared/position.glsl"
+#include "shared/ray.glsl"
+
+layout(location = 0) out uvec4 out_position;
+layout(location = 1) out vec4 out_surface;  // gradient x, y; distance along the ray; hillshade
+layout(location = 2) out vec4 out_base;
+
+uniform sampler2D illumination;
+uniform vec3 hillshade;  // cosine on level ground; strength
+uniform vec3 base_color;
+#ifdef RAMP
+uniform sampler2D ramp;
+uniform vec2 ramp_range;
+#endif
+
+struct Triangle {
+    vec3 a;
+    vec3 b;
+    vec3 c;
+};
+
+// The corners of the triangle in hand, in the order of the tile's index buffer (terrain_mesh.cpp).
+Triangle covering_triangle() {
+    int quads = tile_quads >> tile_level;
+    int quad = gl_PrimitiveID >> 1;
+    ivec2 north_west = ivec2(quad % quads, quad / quads);
+    ivec2 a = mesh_sample(north_west);
+    ivec2 b = mesh_sample(north_west + ((gl_PrimitiveID & 1) == 0 ? ivec2(0, 1) : ivec2(1, 1)));
+    ivec2 c = mesh_sample(north_west + ((gl_PrimitiveID & 1) == 0 ? ivec2(1, 1) : ivec2(1, 0)));
+    vec3 h = vec3(sample_height(a), sample_height(b), sample_height(c));
+#ifdef HOLES
+    if (any(lessThan(h, vec3(missing_height)))) discard;
+#endif
+    return Triangle(relative_to_eye(a, h.x), relative_to_eye(b, h.y), relative_to_eye(c, h.z));
+}
+
+vec2 gradient_of(Triangle t) {
+    vec3 u = t.b - t.a;
+    vec3 v = t.c - t.a;
+    return vec2(u.z * v.y - v.z * u.y, v.z * u.x - u.z * v.x) / (u.x * v.y - u.y * v.x);
+}
+
+float distance_along_ray(Triangle t, vec2 gradient, vec3 origin, vec3 direction) {
+    vec3 normal = vec3(-gradient, 1.0);
+    vec3 depths = vec3(dot(t.a, forward.xyz), dot(t.b, forward.xyz), dot(t.c, forward.xyz));
+    float nearest = max(min(depths.x, min(depths.y, depths.z)), eye_offset.w);
+    float farthest = max(max(depths.x, max(depths.y, depths.z)), nearest);
+    float along = dot(normal, direction);
+    if (along == 0.0) return nearest;
+    return clamp(dot(normal, t.a - origin) / along, nearest, farthest);
+}
+
+Position map_position(vec3 relative) {
+    vec2 local = eye_offset.xy + relative.xy;
+    vec2 blocks = floor(local / eye_offset.z);
+    return Position(eye_block.xy + ivec2(blocks), local - blocks * eye_offset.z);
+}
+
+float shade_at(vec3 relative, mat2 foot) {
+    vec2 steps = vec2(relative.x, -relative.y) / spacing.xy + eye_sample_fraction.xy;
+    vec2 coordinates = (vec2(eye_sample.xy) + steps + 0.5) / vec2(samples.xy);
+    vec2 scale = vec2(1.0, -1.0) / (spacing.xy * vec2(samples.xy));
+    float cosine = textureGrad(illumination, coordinates, foot[0] * scale, foot[1] * scale).r;
+    return 1.0 + hillshade.y * (cosine - hillshade.x) / max(hillshade.x, 0.05);
+}
+
+void main() {
+    Triangle triangle = covering_triangle();
+    vec2 pixel = pixel_from_centre();
+    vec3 origin = ray_origin_at(pixel);
+    vec3 direction = ray_direction_at(pixel);
+    vec2 gradient = gradient_of(triangle);
+    float distance = distance_along_ray(triangle, gradient, origin, direction);
+    vec3 relative = origin + distance * direction;
+    out_position = pack_position(map_position(relative));
+    out_surface = vec4(gradient, distance, shade_at(relative, footprint(pixel, gradient, distance)));
+#ifdef RAMP
+    float height = relative.z + eye_sample_fraction.z;
+    out_base = vec4(textureLod(ramp, vec2((height - ramp_range.x) / (ramp_range.y - ramp_range.x), 0.5), 0.0).rgb, 1.0);
+#else
+    out_base = vec4(base_color, 1.0);
+#endif
+}

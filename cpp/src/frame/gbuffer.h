@@ -1,0 +1,27 @@
+// The G-buffer: what is seen at each pixel of a rectangle of the picture.
+#pragma once
+
+#include "decalgl/technique/technique.h"
+#include "gl/texture.h"
+
+namespace decalgl {
+
+class GBuffer {
+  public:
+    GBuffer() = default;
+    GBuffer(int width, int height, const MemoryAccount& memory);
+
+    // Binds it for drawing and clears it to sky.
+    void begin() const;
+    GBufferView view() const { return {&position, &surface}; }
+    int width() const { return position.width(); }
+    int height() const { return position.height(); }
+
+    gl::Texture2D position;  // block x, y; offset x, y as bits
+    gl::Texture2D surface;   // gradient x, y; distance along the ray; hillshade
+    gl::Texture2D base;      // colour of the bare terrain
+    gl::Texture2D depth;     // reversed
+    gl::Framebuffer framebuffer;
+};
+
+}  // namespace decalgl

@@ -1,0 +1,250 @@
+#include "frame/pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "decalgl/core/error.h"
+#include "frame/surface_readback.h"
+#include "gl/pass_timer.h"
+#include "gl/readback.h"
+
+namespace decalgl {
+namespace {
+
+constexpr int largest_rectangle = 4096;
+
+gl::Backend backend_named(const std::string& name) {
+    if (name == "auto") return gl::Backend::automatic;
+    if (name == "egl") return gl::Backend::egl;
+    if (name == "osmesa") return gl::Backend::osmesa;
+    throw Error(ErrorKind::input, "there is no backend '" + name + "'; choose auto, egl or osmesa");
+}
+
+bool same_view(const PictureRequest& a, const PictureRequest& b) {
+    return a.camera.eye == b.camera.eye && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
+           a.camera.fov == b.camera.fov && a.camera.view_height == b.camera.view_height && a.width == b.width &&
+           a.height == b.height && a.terrain_error == b.terrain_error;
+}
+
+// Copies a rectangle, whose rows come bottom first, into an array of the whole picture with row 0 at the top.
+template <typename T>
+void place(const std::vector<T>& pixels, const Rectangle& rectangle, int components, int width, int height,
+           std::vector<T>& picture) {
+    const auto row_length = static_cast<std::ptrdiff_t>(rectangle.width) * components;
+    for (int row = 0; row < rectangle.height; ++row) {
+        const int picture_row = height - 1 - (rectangle.y + row);
+        const auto target = (static_cast<std::ptrdiff_t>(picture_row) * width + rectangle.x) * components;
+        std::copy_n(pixels.begin() + row * row_length, row_length, picture.begin() + target);
+    }
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
+    : memory_(memory), context_(gl::Context::create(backend_named(options.backend))), options_(options) {
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDepthFunc(GL_GREATER);
+    glDisable(GL_DITHER);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    view_buffer_ = gl::Buffer::create(memory_, "frame: view", sizeof(ViewBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    no_vertices_ = gl::VertexArray::create();
+}
+
+bool Pipeline::draws(const PreparedScene* scene, const PictureRequest& request) const {
+    return scene_.get() == scene && same_view(request_, request) && request_.antialias == request.antialias &&
+           request_.background.low == request.background.low && request_.background.high == request.background.high;
+}
+
+void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
+    // The old scene goes first: both at once may not fit.
+    techniques_.clear();
+    terrain_.reset();
+    scene_.reset();
+    terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
+    for (const PreparedPass& pass : scene->passes) {
+        techniques_.push_back(make_technique(pass.technique));
+        techniques_.back()->upload(pass.prepared, memory_);
+    }
+    gl::check_errors("uploading the scene");
+    scene_ = std::move(scene);
+}
+
+UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
+    timings_.clear();
+    drawn_in_gbuffer_ = nullptr;
+    if (scene_ != scene) {
+        const gl::PassTimer timer(&timings_, "upload");
+        upload(std::move(scene));
+    }
+    request_ = request;
+    view_ = {request.width, request.height, scene_->positions, request.antialias};
+    view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain, scene_->positions);
+    tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
+                          request.terrain_error);
+    choose_rectangles();
+    make_targets();
+    UpdateReport report;
+    for (const auto& technique : techniques_) {
+        const UpdateReport part = technique->update(view_);
+        report.pieces += part.pieces;
+        report.bytes += part.bytes;
+    }
+    return report;
+}
+
+void Pipeline::choose_rectangles() {
+    const gl::ContextInfo& limits = context_->info();
+    if (request_.width > limits.max_viewport[0] || request_.height > limits.max_viewport[1])
+        throw Error(ErrorKind::memory, "a picture of " + std::to_string(request_.width) + " x " +
+                                           std::to_string(request_.height) + " pixels is larger than this driver's " +
+                                           std::to_string(limits.max_viewport[0]) + " x " +
+                                           std::to_string(limits.max_viewport[1]) + "; ask for a smaller size");
+    const int wanted = options_.rectangle > 0 ? options_.rectangle : largest_rectangle;
+    const int side = std::min(wanted, limits.max_texture_size);
+    rectangles_.clear();
+    for (int y = 0; y < request_.height; y += side)
+        for (int x = 0; x < request_.width; x += side)
+            rectangles_.push_back({x, y, std::min(side, request_.width - x), std::min(side, request_.height - y)});
+}
+
+void Pipeline::make_targets() {
+    const int width = rectangles_.front().width;
+    const int height = rectangles_.front().height;
+    const bool has_overlay = !techniques_.empty();
+    const bool fits = picture_ && gbuffer_.width() == width && gbuffer_.height() == height &&
+                      static_cast<bool>(overlay_) == has_overlay;
+    if (fits) return;
+    gbuffer_ = GBuffer();
+    overlay_ = gl::Texture2D();
+    picture_ = gl::Texture2D();
+    gbuffer_ = GBuffer(width, height, memory_);
+    if (has_overlay) {
+        overlay_ = gl::Texture2D::create(memory_, "frame: overlay", GL_RGBA8, width, height);
+        overlay_framebuffer_ = gl::Framebuffer::create("overlay", {{GL_COLOR_ATTACHMENT0, &overlay_}});
+    }
+    picture_ = gl::Texture2D::create(memory_, "frame: picture", GL_RGBA8, width, height);
+    picture_framebuffer_ = gl::Framebuffer::create("picture", {{GL_COLOR_ATTACHMENT0, &picture_}});
+}
+
+// Runs `body` on each rectangle with its G-buffer drawn; one that is still there is not drawn again.
+void Pipeline::for_each_rectangle(const RectangleFn& body) {
+    for (const Rectangle& rectangle : rectangles_) {
+        if (drawn_in_gbuffer_ != &rectangle) draw_gbuffer(rectangle);
+        drawn_in_gbuffer_ = &rectangle;
+        body(rectangle);
+    }
+}
+
+void Pipeline::draw_gbuffer(const Rectangle& rectangle) {
+    const gl::PassTimer timer(&timings_, "terrain");
+    view_block_.picture.x = rectangle.x;
+    view_block_.picture.y = rectangle.y;
+    view_buffer_.update(0, sizeof(ViewBlock), &view_block_);
+    view_buffer_.bind_base(GL_UNIFORM_BUFFER, 0);
+    gbuffer_.begin();
+    glViewport(-rectangle.x, -rectangle.y, request_.width, request_.height);
+    glEnable(GL_DEPTH_TEST);
+    triangles_ = terrain_->draw(tiles_, programs_);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void Pipeline::draw_overlay() {
+    for (const auto& technique : techniques_) {
+        const gl::PassTimer timer(&timings_, technique->name());
+        overlay_framebuffer_.bind();
+        technique->draw(view_, gbuffer_.view(), programs_);
+    }
+}
+
+void Pipeline::compose() {
+    const gl::PassTimer timer(&timings_, "compose");
+    gl::Program& program = programs_.get("compose", techniques_.empty() ? gl::Flags{} : gl::Flags{"OVERLAY"});
+    picture_framebuffer_.bind();
+    program.use();
+    program.set("position_texture", 0);
+    gbuffer_.position.bind(0);
+    program.set("surface_texture", 1);
+    gbuffer_.surface.bind(1);
+    program.set("base_texture", 2);
+    gbuffer_.base.bind(2);
+    if (!techniques_.empty()) {
+        program.set("overlay_texture", 3);
+        overlay_.bind(3);
+        program.set("layer_shading", static_cast<float>(scene_->relief.on_layers));
+    }
+    const auto color = [](const std::array<float, 4>& c) { return glm::vec4(c[0], c[1], c[2], c[3]); };
+    program.set("sky_low", color(request_.background.low));
+    program.set("sky_high", color(request_.background.high));
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+std::vector<uint8_t> Pipeline::draw_image() {
+    std::vector<uint8_t> image(4 * static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height));
+    for_each_rectangle([&](const Rectangle& rectangle) {
+        draw_overlay();
+        compose();
+        const gl::PassTimer timer(&timings_, "readback");
+        place(gl::read_pixels<uint8_t>(picture_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0, rectangle.width,
+                                       rectangle.height, gl::transfer_format(GL_RGBA8), 4),
+              rectangle, 4, request_.width, request_.height, image);
+    });
+    gl::check_errors("drawing the picture");
+    return image;
+}
+
+std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
+    const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
+    std::vector<std::vector<uint32_t>> ids(techniques_.size(), std::vector<uint32_t>(pixels, 0));
+    if (techniques_.empty()) return ids;
+    const gl::Texture2D target =
+        gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, gbuffer_.width(), gbuffer_.height());
+    const gl::Framebuffer framebuffer = gl::Framebuffer::create("ids", {{GL_COLOR_ATTACHMENT0, &target}});
+    for_each_rectangle([&](const Rectangle& rectangle) {
+        for (size_t i = 0; i < techniques_.size(); ++i) {
+            framebuffer.bind();
+            techniques_[i]->draw_ids(view_, gbuffer_.view(), programs_);
+            place(gl::read_pixels<uint32_t>(framebuffer, GL_COLOR_ATTACHMENT0, 0, 0, rectangle.width,
+                                            rectangle.height, gl::transfer_format(GL_R32UI), 1),
+                  rectangle, 1, request_.width, request_.height, ids[i]);
+        }
+    });
+    gl::check_errors("drawing ids");
+    return ids;
+}
+
+void Pipeline::draw_surface(std::vector<double>& world, std::vector<float>& depth) {
+    const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
+    std::vector<uint32_t> positions(4 * pixels);
+    std::vector<float> surfaces(4 * pixels);
+    for_each_rectangle([&](const Rectangle& rectangle) {
+        place(gl::read_pixels<uint32_t>(gbuffer_.framebuffer, GL_COLOR_ATTACHMENT0, 0, 0, rectangle.width,
+                                        rectangle.height, gl::transfer_format(GL_RGBA32UI), 4),
+              rectangle, 4, request_.width, request_.height, positions);
+        place(gl::read_pixels<float>(gbuffer_.framebuffer, GL_COLOR_ATTACHMENT1, 0, 0, rectangle.width,
+                                     rectangle.height, gl::transfer_format(GL_RGBA32F), 4),
+              rectangle, 4, request_.width, request_.height, surfaces);
+    });
+    gl::check_errors("reading the surface");
+    unpack_surface(positions, surfaces, request_, scene_->positions, world, depth);
+}
+
+double Pipeline::time_floor() {
+    gl::Program& program = programs_.get("floor");
+    TimingLog log(true);
+    for_each_rectangle([&](const Rectangle&) {
+        const gl::PassTimer timer(&log, "floor");
+        picture_framebuffer_.bind();
+        program.use();
+        program.set("depth_texture", 0);
+        gbuffer_.depth.bind(0);
+        no_vertices_.bind();
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    });
+    return log.total();
+}
+
+}  // namespace decalgl

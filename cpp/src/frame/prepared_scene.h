@@ -1,0 +1,39 @@
+// A scene made ready on the CPU: everything a picture needs, and no GL.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "decalgl/core/timing.h"
+#include "decalgl/frame/scene.h"
+#include "decalgl/technique/technique.h"
+#include "decalgl/terrain/tiles.h"
+
+namespace decalgl {
+
+// Neighbouring layers of one technique are one pass.
+struct PreparedPass {
+    std::string technique;
+    std::shared_ptr<const Prepared> prepared;
+};
+
+struct PreparedScene {
+    Heightfield terrain;  // exaggerated
+    TerrainTiles tiles;
+    Relief relief;
+    std::vector<uint8_t> illumination;
+    PositionGrid positions;
+    std::vector<PreparedPass> passes;  // bottom to top
+    std::vector<Features> features;    // of each layer, for their rows
+    TimingLog timings{true};
+    double milliseconds = 0.0;
+
+    int64_t row_of(FeatureReference reference) const { return features[reference.layer].rows[reference.feature]; }
+};
+
+// Validates and prepares. Throws Error(input), Error(memory), Error(cancelled).
+std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads, const MemoryAccount& memory,
+                                                   const ProgressFn& progress);
+
+}  // namespace decalgl

@@ -1,0 +1,184 @@
+#include "decalgl/frame/renderer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "decalgl/core/error.h"
+#include "frame/pipeline.h"
+#include "frame/stats.h"
+
+namespace decalgl {
+namespace {
+
+constexpr int largest_side = 1 << 20;
+
+void require_options(const RendererOptions& options) {
+    if (options.width < 1 || options.height < 1 || options.width > largest_side || options.height > largest_side)
+        throw Error(ErrorKind::input, "the picture's size must be at least 1 x 1 pixels and reasonable, not " +
+                                          std::to_string(options.width) + " x " + std::to_string(options.height));
+    if (!(options.terrain_error >= 0.0))
+        throw Error(ErrorKind::input, "terrain_error must be zero or more pixels");
+    if (options.rectangle < 0) throw Error(ErrorKind::input, "rectangle must be zero or more pixels");
+}
+
+}  // namespace
+
+struct RendererState {
+    RendererOptions options;
+    MemoryAccount memory;
+    std::shared_ptr<const PreparedScene> scene;
+    std::unique_ptr<Pipeline> pipeline;  // made by the first update
+    PictureRequest request;
+    std::shared_ptr<const PreparedScene> updated_scene;  // what the last successful update was given
+    double update_ms = 0.0;
+
+    // Makes the pipeline draw a request, whatever it drew last.
+    Pipeline& pipeline_for(const std::shared_ptr<const PreparedScene>& wanted, const PictureRequest& wanted_request) {
+        if (!pipeline->draws(wanted.get(), wanted_request)) pipeline->update(wanted, wanted_request);
+        return *pipeline;
+    }
+};
+
+struct FrameState {
+    std::shared_ptr<RendererState> renderer;
+    std::shared_ptr<const PreparedScene> scene;
+    PictureRequest request;
+    FrameStats stats;
+    std::vector<uint8_t> image;
+    std::vector<int64_t> ids;
+    std::vector<int32_t> layers;
+    std::vector<float> depth;
+    std::vector<double> world;
+
+    void read_surface();
+    void read_ids();
+};
+
+Renderer::Renderer(RendererOptions options) : state_(std::make_shared<RendererState>()) {
+    require_options(options);
+    state_->options = std::move(options);
+    state_->memory = MemoryAccount(state_->options.memory_limit);
+}
+
+const RendererOptions& Renderer::options() const { return state_->options; }
+
+void Renderer::set_picture(int width, int height, Antialias antialias) {
+    RendererOptions options = state_->options;
+    options.width = width;
+    options.height = height;
+    options.antialias = antialias;
+    require_options(options);
+    state_->options = options;
+}
+
+void Renderer::preprocess(const Scene& scene, const ProgressFn& progress) {
+    state_->scene = prepare_scene(scene, state_->options.threads, state_->memory, progress);
+}
+
+UpdateReport Renderer::update(const Camera& camera) {
+    RendererState& state = *state_;
+    if (!state.scene) throw Error(ErrorKind::input, "nothing to draw yet; call preprocess(scene) first");
+    const Stopwatch watch;
+    if (!state.pipeline) state.pipeline = std::make_unique<Pipeline>(state.options, state.memory);
+    const gl::CurrentScope current(state.pipeline->context());
+    const RendererOptions& options = state.options;
+    const PictureRequest request{camera, options.width, options.height, options.antialias, options.terrain_error, {}};
+    const UpdateReport report = state.pipeline->update(state.scene, request);
+    state.request = request;
+    state.updated_scene = state.scene;
+    state.update_ms = watch.milliseconds();
+    return report;
+}
+
+Frame Renderer::render(const Background& background) {
+    RendererState& state = *state_;
+    if (!state.updated_scene)
+        throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
+    const gl::CurrentScope current(state.pipeline->context());
+    auto frame = std::make_shared<FrameState>();
+    state.request.background = background;
+    frame->renderer = state_;
+    frame->scene = state.updated_scene;
+    frame->request = state.request;
+    const Stopwatch watch;
+    Pipeline& pipeline = state.pipeline_for(frame->scene, frame->request);
+    frame->image = pipeline.draw_image();
+    frame->stats = collect_stats(pipeline, *frame->scene, state.memory);
+    frame->stats.update_ms = state.update_ms;
+    frame->stats.render_ms = watch.milliseconds() - frame->stats.readback_ms;
+    return Frame(std::move(frame));
+}
+
+double Renderer::time_floor() {
+    if (!state_->pipeline) throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
+    const gl::CurrentScope current(state_->pipeline->context());
+    return state_->pipeline->time_floor();
+}
+
+void FrameState::read_surface() {
+    if (!depth.empty()) return;
+    const gl::CurrentScope current(renderer->pipeline->context());
+    renderer->pipeline_for(scene, request).draw_surface(world, depth);
+}
+
+void FrameState::read_ids() {
+    if (!ids.empty()) return;
+    const gl::CurrentScope current(renderer->pipeline->context());
+    const std::vector<std::vector<uint32_t>> passes = renderer->pipeline_for(scene, request).draw_ids();
+    const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+    ids.assign(pixels, -1);
+    layers.assign(pixels, -1);
+    for (size_t pass = 0; pass < passes.size(); ++pass) {
+        const Prepared& prepared = *scene->passes[pass].prepared;
+        for (size_t i = 0; i < pixels; ++i) {
+            if (passes[pass][i] == 0) continue;
+            const FeatureReference reference = prepared.feature(passes[pass][i] - 1);
+            ids[i] = scene->row_of(reference);
+            layers[i] = static_cast<int32_t>(reference.layer);
+        }
+    }
+}
+
+int Frame::width() const { return state_->request.width; }
+int Frame::height() const { return state_->request.height; }
+const std::vector<uint8_t>& Frame::image() const { return state_->image; }
+const FrameStats& Frame::stats() const { return state_->stats; }
+
+const std::vector<int64_t>& Frame::ids() const {
+    state_->read_ids();
+    return state_->ids;
+}
+
+const std::vector<int32_t>& Frame::layers() const {
+    state_->read_ids();
+    return state_->layers;
+}
+
+const std::vector<float>& Frame::depth() const {
+    state_->read_surface();
+    return state_->depth;
+}
+
+const std::vector<double>& Frame::world() const {
+    state_->read_surface();
+    return state_->world;
+}
+
+std::vector<PickedFeature> Frame::pick(int x, int y) const {
+    if (x < 0 || y < 0 || x >= width() || y >= height())
+        throw Error(ErrorKind::input, "pixel (" + std::to_string(x) + ", " + std::to_string(y) +
+                                          ") lies outside the picture of " + std::to_string(width()) + " x " +
+                                          std::to_string(height()));
+    const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width()) + static_cast<size_t>(x);
+    const std::vector<double>& positions = world();
+    std::vector<PickedFeature> picked;
+    const PreparedScene& scene = *state_->scene;
+    for (size_t pass = scene.passes.size(); pass-- > 0;) {
+        for (const FeatureReference& reference :
+             scene.passes[pass].prepared->query(positions[3 * pixel], positions[3 * pixel + 1]))
+            picked.push_back({static_cast<int32_t>(reference.layer), scene.row_of(reference)});
+    }
+    return picked;
+}
+
+}  // namespace decalgl

@@ -1,0 +1,17 @@
+// From the G-buffer's packed texels to scene coordinates.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decalgl/frame/picture_request.h"
+
+namespace decalgl {
+
+// `positions` and `surfaces`: four values a pixel as the G-buffer holds them, row 0 at the top. Fills `world` with x, y,
+// z a pixel (NaN for sky) and `depth` with planar eye depth (infinite for sky).
+void unpack_surface(const std::vector<uint32_t>& positions, const std::vector<float>& surfaces,
+                    const PictureRequest& request, const PositionGrid& grid, std::vector<double>& world,
+                    std::vector<float>& depth);
+
+}  // namespace decalgl

@@ -1,0 +1,209 @@
+#include "frame/view_setup.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "decalgl/core/error.h"
+
+namespace decalgl {
+namespace {
+
+constexpr double radians = 3.14159265358979323846 / 180.0;
+constexpr double near_distance = 1e-3;
+
+struct SplitNumber {
+    int32_t whole;
+    float fraction;
+};
+
+SplitNumber split(double value) {
+    const double whole = std::floor(value);
+    if (!(std::abs(whole) < 1e9))
+        throw Error(ErrorKind::input, "camera: the eye is too far from this terrain to draw it; move it closer");
+    return {static_cast<int32_t>(whole), static_cast<float>(value - whole)};
+}
+
+double half_height_at_unit_distance(const Camera& camera) { return std::tan(0.5 * camera.fov * radians); }
+
+// The farthest of the terrain's box along the camera's axis, for the finite depth range of orthographic views.
+double farthest_depth(const Camera& camera, const CameraBasis& basis, const Heightfield& terrain) {
+    const Bounds bounds = terrain.bounds();
+    float lowest = std::numeric_limits<float>::max();
+    float highest = std::numeric_limits<float>::lowest();
+    for (const float height : terrain.heights()) {
+        lowest = std::fmin(lowest, height);
+        highest = std::fmax(highest, height);
+    }
+    double depth = 1.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 point(corner & 1 ? bounds.max_x : bounds.min_x, corner & 2 ? bounds.max_y : bounds.min_y,
+                               static_cast<double>(corner & 4 ? highest : lowest));
+        depth = std::max(depth, glm::dot(point - camera.eye, basis.forward));
+    }
+    return depth * 1.01;
+}
+
+void set_row(mat4& matrix, int row, glm::dvec3 values, double last) {
+    for (int column = 0; column < 3; ++column) matrix[column][row] = static_cast<float>(values[column]);
+    matrix[3][row] = static_cast<float>(last);
+}
+
+// Reversed depth: 1 at the nearest distance, 0 at the farthest or at infinity.
+void set_projection(const Camera& camera, const CameraBasis& basis, double aspect, const Heightfield& terrain,
+                    ViewBlock& block) {
+    const double half = camera.orthographic() ? 0.5 * camera.view_height : half_height_at_unit_distance(camera);
+    set_row(block.clip_from_eye, 0, basis.right / (half * aspect), 0.0);
+    set_row(block.clip_from_eye, 1, basis.up / half, 0.0);
+    if (camera.orthographic()) {
+        set_row(block.clip_from_eye, 2, -basis.forward / farthest_depth(camera, basis, terrain), 1.0);
+        set_row(block.clip_from_eye, 3, {0.0, 0.0, 0.0}, 1.0);
+        block.eye_offset.w = 0.0F;
+    } else {
+        set_row(block.clip_from_eye, 2, {0.0, 0.0, 0.0}, near_distance);
+        set_row(block.clip_from_eye, 3, basis.forward, 0.0);
+        block.eye_offset.w = static_cast<float>(near_distance);
+    }
+}
+
+void set_rays(const Camera& camera, const CameraBasis& basis, int height, ViewBlock& block) {
+    const auto pixel_step = [&](glm::dvec3 axis, double half) { return vec4(axis * (2.0 * half / height), 0.0); };
+    block.forward = block.ray_direction = vec4(basis.forward, 0.0);
+    const vec4 zero(0.0F);
+    if (camera.orthographic()) {
+        block.ray_direction_dx = block.ray_direction_dy = zero;
+        block.ray_origin_dx = pixel_step(basis.right, 0.5 * camera.view_height);
+        block.ray_origin_dy = pixel_step(basis.up, 0.5 * camera.view_height);
+    } else {
+        block.ray_direction_dx = pixel_step(basis.right, half_height_at_unit_distance(camera));
+        block.ray_direction_dy = pixel_step(basis.up, half_height_at_unit_distance(camera));
+        block.ray_origin_dx = block.ray_origin_dy = zero;
+    }
+}
+
+// A box in the scene relative to the eye.
+struct Box {
+    glm::dvec3 low;
+    glm::dvec3 high;
+
+    // The largest value of dot(normal, point) in the box.
+    double reach(glm::dvec3 normal) const {
+        return (normal.x > 0.0 ? high.x : low.x) * normal.x + (normal.y > 0.0 ? high.y : low.y) * normal.y +
+               (normal.z > 0.0 ? high.z : low.z) * normal.z;
+    }
+
+    double distance() const {
+        const glm::dvec3 nearest = glm::clamp(glm::dvec3(0.0), low, high);
+        return glm::length(nearest);
+    }
+};
+
+// Planes through the picture's edges: a point is seen when dot(normal, point) + offset >= 0 for all of them.
+struct Frustum {
+    struct Plane {
+        glm::dvec3 normal;
+        double offset;
+    };
+    std::array<Plane, 5> planes;
+
+    Frustum(const Camera& camera, const CameraBasis& basis, double aspect) {
+        const bool flat = camera.orthographic();
+        const double half_y = flat ? 0.5 * camera.view_height : half_height_at_unit_distance(camera);
+        const double half_x = half_y * aspect;
+        const glm::dvec3 ahead = flat ? glm::dvec3(0.0) : basis.forward;
+        planes = {{{ahead * half_x + basis.right, flat ? half_x : 0.0},
+                   {ahead * half_x - basis.right, flat ? half_x : 0.0},
+                   {ahead * half_y + basis.up, flat ? half_y : 0.0},
+                   {ahead * half_y - basis.up, flat ? half_y : 0.0},
+                   {basis.forward, 0.0}}};
+    }
+
+    bool sees(const Box& box) const {
+        return std::all_of(planes.begin(), planes.end(),
+                           [&](const Plane& plane) { return box.reach(plane.normal) + plane.offset >= 0.0; });
+    }
+};
+
+Box tile_box(const TerrainTile& tile, const Heightfield& terrain, const glm::dvec3& eye) {
+    const int32_t last_column = std::min(tile.column + tile_quads, terrain.columns() - 1);
+    const int32_t last_row = std::min(tile.row + tile_quads, terrain.rows() - 1);
+    return {glm::dvec3(terrain.x0() + tile.column * terrain.dx(), terrain.y0() - last_row * terrain.dy(),
+                       static_cast<double>(tile.lowest)) - eye,
+            glm::dvec3(terrain.x0() + last_column * terrain.dx(), terrain.y0() - tile.row * terrain.dy(),
+                       static_cast<double>(tile.highest)) - eye};
+}
+
+int choose_level(const TerrainTile& tile, double pixels_per_metre, double terrain_error) {
+    int level = 0;
+    while (terrain_error > 0.0 && level + 1 < tile_levels &&
+           static_cast<double>(tile.error[static_cast<size_t>(level + 1)]) * pixels_per_metre <= terrain_error)
+        ++level;
+    return level;
+}
+
+}  // namespace
+
+ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,
+                          const PositionGrid& positions) {
+    const CameraBasis basis = basis_of(camera);
+    ViewBlock block{};
+    set_projection(camera, basis, static_cast<double>(width) / height, terrain, block);
+    set_rays(camera, basis, height, block);
+
+    const SplitNumber block_x = split((camera.eye.x - positions.origin_x) / positions.block_size);
+    const SplitNumber block_y = split((camera.eye.y - positions.origin_y) / positions.block_size);
+    block.eye_block = {block_x.whole, block_y.whole, 0, 0};
+    block.eye_offset.x = static_cast<float>(
+        camera.eye.x - (positions.origin_x + static_cast<double>(block_x.whole) * positions.block_size));
+    block.eye_offset.y = static_cast<float>(
+        camera.eye.y - (positions.origin_y + static_cast<double>(block_y.whole) * positions.block_size));
+    block.eye_offset.z = static_cast<float>(positions.block_size);
+
+    const SplitNumber column = split((camera.eye.x - terrain.x0()) / terrain.dx());
+    const SplitNumber row = split((terrain.y0() - camera.eye.y) / terrain.dy());
+    const auto high = static_cast<float>(camera.eye.z);
+    block.eye_sample = {column.whole, row.whole, 0, 0};
+    block.eye_sample_fraction = {column.fraction, row.fraction, high,
+                                 static_cast<float>(camera.eye.z - static_cast<double>(high))};
+    block.spacing = {static_cast<float>(terrain.dx()), static_cast<float>(terrain.dy()), static_cast<float>(width),
+                     static_cast<float>(height)};
+    block.samples = {terrain.columns(), terrain.rows(), 0, 0};
+    block.picture = {0, 0, width, height};
+    return block;
+}
+
+std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain, const Camera& camera,
+                                      int width, int height, double terrain_error) {
+    const CameraBasis basis = basis_of(camera);
+    const Frustum frustum(camera, basis, static_cast<double>(width) / height);
+    std::vector<int> levels(tiles.tiles.size());
+    std::vector<bool> seen(tiles.tiles.size());
+    for (size_t i = 0; i < levels.size(); ++i) {
+        const TerrainTile& tile = tiles.tiles[i];
+        if (tile.lowest > tile.highest) continue;
+        const Box box = tile_box(tile, terrain, camera.eye);
+        const double metres_per_picture = camera.orthographic()
+                                              ? camera.view_height
+                                              : 2.0 * half_height_at_unit_distance(camera) * box.distance();
+        levels[i] = choose_level(tile, height / std::max(metres_per_picture, 1e-9), terrain_error);
+        seen[i] = frustum.sees(box);
+    }
+    const auto level_at = [&](int32_t column, int32_t row) {
+        const bool inside = column >= 0 && column < tiles.columns && row >= 0 && row < tiles.rows;
+        return inside ? levels[static_cast<size_t>(row * tiles.columns + column)] : 0;
+    };
+    std::vector<VisibleTile> visible;
+    for (size_t i = 0; i < levels.size(); ++i) {
+        if (!seen[i]) continue;
+        const auto column = static_cast<int32_t>(i) % tiles.columns;
+        const auto row = static_cast<int32_t>(i) / tiles.columns;
+        visible.push_back({&tiles.tiles[i], levels[i],
+                           {level_at(column - 1, row), level_at(column + 1, row), level_at(column, row - 1),
+                            level_at(column, row + 1)}});
+    }
+    return visible;
+}
+
+}  // namespace decalgl

@@ -1,0 +1,27 @@
+// From a camera to the numbers that passes need: the uniform block and the tiles to draw.
+#pragma once
+
+#include <vector>
+
+#include "decalgl/frame/camera.h"
+#include "decalgl/terrain/tiles.h"
+#include "shared/view_block.h"
+
+namespace decalgl {
+
+// Throws Error(input) where the eye is too far away to be held in block and sample numbers.
+ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,
+                          const PositionGrid& positions);
+
+struct VisibleTile {
+    const TerrainTile* tile;
+    int level;
+    glm::ivec4 neighbour_levels;  // west, east, north, south
+};
+
+// The tiles in the view, each at the coarsest level that is off by no more than `terrain_error` pixels on the
+// screen, whatever was drawn before. `terrain_error` 0: every sample.
+std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain, const Camera& camera,
+                                      int width, int height, double terrain_error);
+
+}  // namespace decalgl

@@ -1,0 +1,37 @@
+// The techniques there are: adding one is its folder and one line here.
+#include <functional>
+#include <map>
+
+#include "decalgl/core/error.h"
+#include "decalgl/technique/technique.h"
+#include "technique/static_decals/static_decals.h"
+
+namespace decalgl {
+namespace {
+
+using MakeTechnique = std::function<std::unique_ptr<Technique>()>;
+
+const std::map<std::string, MakeTechnique>& registry() {
+    static const std::map<std::string, MakeTechnique> techniques = {
+        {"static", [] { return std::make_unique<StaticDecals>(); }},
+    };
+    return techniques;
+}
+
+}  // namespace
+
+std::vector<std::string> technique_names() {
+    std::vector<std::string> names;
+    for (const auto& entry : registry()) names.push_back(entry.first);
+    return names;
+}
+
+std::unique_ptr<Technique> make_technique(const std::string& name) {
+    const auto found = registry().find(name);
+    if (found != registry().end()) return found->second();
+    std::string known;
+    for (const std::string& each : technique_names()) known += (known.empty() ? "" : ", ") + each;
+    throw Error(ErrorKind::input, "there is no technique '" + name + "'; choose one of: " + known);
+}
+
+}  // namespace decalgl

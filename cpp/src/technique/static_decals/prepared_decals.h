@@ -1,0 +1,48 @@
+// Prepared static decals: the grid, its cell stream and the features' styles, as flat arrays.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "decalgl/technique/technique.h"
+#include "technique/static_decals/cell_grid.h"
+
+namespace decalgl {
+
+struct CellTexel {
+    uint32_t x;
+    uint32_t y;
+};
+
+// As the shaders read it, one a slot.
+struct DecalStyle {
+    std::array<uint8_t, 4> color;
+    float half_width;  // quanta; 0 for polygons
+};
+static_assert(sizeof(DecalStyle) == 8, "read as one RG32UI texel");
+
+class PreparedDecals : public Prepared {
+  public:
+    PreparedCounts counts() const override;
+    FeatureReference feature(uint32_t id) const override { return slots[id]; }
+    std::vector<FeatureReference> query(double x, double y) const override;
+
+    CellGrid grid;
+    std::vector<uint32_t> cell_starts;  // into texels, cell_count() + 1 of them
+    std::vector<CellTexel> texels;
+    std::vector<DecalStyle> styles;
+    std::vector<FeatureReference> slots;  // topmost first
+    uint64_t segments = 0;
+    uint64_t pieces = 0;
+    int largest_scale = 0;
+    bool has_polygons = false;
+    bool has_lines = false;
+    bool has_translucency = false;
+    MemoryCharge charge;
+};
+
+// Throws Error(memory) where the index would not fit into the budget or the stream, Error(cancelled).
+std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress);
+
+}  // namespace decalgl

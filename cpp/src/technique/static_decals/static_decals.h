@@ -1,0 +1,31 @@
+// Static decals: polygons and lines of world size, decided for each pixel from a grid of cells.
+#pragma once
+
+#include "decalgl/technique/technique.h"
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/vertex_array.h"
+#include "technique/static_decals/prepared_decals.h"
+
+namespace decalgl {
+
+class StaticDecals : public Technique {
+  public:
+    std::string name() const override { return "static"; }
+    std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input, Progress& progress) const override;
+    void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) override;
+    UpdateReport update(const View& view) override;
+    void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
+    void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
+
+  private:
+    void draw_full_screen(gl::Flags flags, const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+
+    std::shared_ptr<const PreparedDecals> prepared_;
+    gl::TextureBuffer cell_starts_;
+    gl::TextureBuffer cell_texels_;
+    gl::TextureBuffer styles_;
+    gl::VertexArray no_vertices_;
+};
+
+}  // namespace decalgl

@@ -1,0 +1,45 @@
+// Errors of the core become the exceptions of decalgl.errors.
+#include <new>
+
+#include "decalgl/core/error.h"
+#include "register.h"
+
+namespace py = pybind11;
+
+namespace decalgl::bindings {
+namespace {
+
+const char* exception_name(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::input: return "InputError";
+        case ErrorKind::crs: return "CrsError";
+        case ErrorKind::style: return "StyleError";
+        case ErrorKind::file: return "FileError";
+        case ErrorKind::memory: return "MemoryLimitError";
+        case ErrorKind::graphics: return "GraphicsError";
+        case ErrorKind::cancelled: return "CancelledError";
+        case ErrorKind::unsupported: return "UnsupportedError";
+    }
+    return "DecalError";
+}
+
+void raise(const char* name, const char* message) {
+    const py::object type = py::module_::import("decalgl.errors").attr(name);
+    PyErr_SetString(type.ptr(), message);
+}
+
+}  // namespace
+
+void register_errors(py::module_&) {
+    py::register_exception_translator([](std::exception_ptr pending) {
+        try {
+            if (pending) std::rethrow_exception(pending);
+        } catch (const Error& error) {
+            raise(exception_name(error.kind()), error.what());
+        } catch (const std::bad_alloc&) {
+            raise("MemoryLimitError", "the machine has no memory left for this; draw less at once, or set memory_limit");
+        }
+    });
+}
+
+}  // namespace decalgl::bindings

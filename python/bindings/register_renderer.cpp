@@ -1,0 +1,158 @@
+// Cameras, renderers and frames.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "decalgl/core/error.h"
+#include "decalgl/frame/renderer.h"
+#include "register.h"
+
+namespace py = pybind11;
+
+namespace decalgl::bindings {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+glm::dvec3 to_glm(const Vector& v) { return {v[0], v[1], v[2]}; }
+
+Antialias antialias_named(const std::string& name) {
+    if (name == "none") return Antialias::none;
+    if (name == "coverage") return Antialias::coverage;
+    throw Error(ErrorKind::input, "there is no antialias '" + name + "'; choose none or coverage");
+}
+
+// A read-only view of a frame's values, which keeps the frame.
+template <typename T>
+py::array_t<T> view_of(const std::vector<T>& values, std::vector<py::ssize_t> shape, const py::object& owner) {
+    py::array_t<T> array(std::move(shape), values.data(), owner);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+
+// Progress is told with the interpreter held; an exception of the callback stops the work and comes back as it was.
+void preprocess(Renderer& renderer, const Scene& scene, const py::object& progress) {
+    ProgressFn callback;
+    if (!progress.is_none()) {
+        callback = [&progress](std::string_view stage, double fraction) {
+            const py::gil_scoped_acquire interpreter;
+            const py::object answer = progress(std::string(stage), fraction);
+            return answer.is_none() || py::cast<bool>(answer);
+        };
+    }
+    const py::gil_scoped_release others_may_run;
+    renderer.preprocess(scene, callback);
+}
+
+py::dict stats_of(const Frame& frame) {
+    const FrameStats& stats = frame.stats();
+    py::list passes;
+    for (const TimedPass& pass : stats.passes) {
+        py::dict entry;
+        entry["name"] = pass.name;
+        entry["ms"] = pass.ms;
+        passes.append(entry);
+    }
+    py::dict stages;
+    stages["preprocess"] = stats.preprocess_ms;
+    stages["update"] = stats.update_ms;
+    stages["render"] = stats.render_ms;
+    stages["readback"] = stats.readback_ms;
+    py::dict bytes;
+    for (const auto& [name, count] : stats.bytes) bytes[py::str(name)] = count;
+    py::dict counts;
+    for (const auto& [name, count] : stats.counts) counts[py::str(name)] = count;
+    py::dict result;
+    result["passes"] = passes;
+    result["stages"] = stages;
+    result["bytes"] = bytes;
+    result["counts"] = counts;
+    result["variants"] = stats.variants;
+    return result;
+}
+
+template <typename Values>
+auto frame_array(Values values, int components) {
+    return [values, components](const py::object& self) {
+        const auto& frame = py::cast<const Frame&>(self);
+        std::vector<py::ssize_t> shape{frame.height(), frame.width()};
+        if (components > 1) shape.push_back(components);
+        return view_of((frame.*values)(), std::move(shape), self);
+    };
+}
+
+void register_frame(py::module_& module) {
+    py::class_<Frame>(module, "Frame")
+        .def_property_readonly("image", frame_array(&Frame::image, 4))
+        .def_property_readonly("ids", frame_array(&Frame::ids, 1))
+        .def_property_readonly("layers", frame_array(&Frame::layers, 1))
+        .def_property_readonly("depth", frame_array(&Frame::depth, 1))
+        .def_property_readonly("world", frame_array(&Frame::world, 3))
+        .def_property_readonly("stats", &stats_of)
+        .def(
+            "pick",
+            [](const Frame& frame, int x, int y) {
+                std::vector<std::pair<int32_t, int64_t>> picked;
+                for (const PickedFeature& feature : frame.pick(x, y)) picked.emplace_back(feature.layer, feature.row);
+                return picked;
+            },
+            py::arg("x"), py::arg("y"));
+}
+
+}  // namespace
+
+void register_renderer(py::module_& module) {
+    py::class_<Camera>(module, "Camera")
+        .def(py::init([](const Vector& eye, const Vector& target, const Vector& up, double fov, double view_height) {
+                 Camera camera = Camera::look_at(to_glm(eye), to_glm(target), fov);
+                 camera.up = to_glm(up);
+                 camera.view_height = view_height;
+                 return camera;
+             }),
+             py::arg("eye"), py::arg("target"), py::arg("up"), py::arg("fov"), py::arg("view_height"));
+
+    register_frame(module);
+
+    py::class_<Renderer>(module, "Renderer")
+        .def(py::init([](int width, int height, const std::string& antialias, double terrain_error,
+                         uint64_t memory_limit, const std::string& backend, unsigned threads, int rectangle) {
+                 RendererOptions options;
+                 options.width = width;
+                 options.height = height;
+                 options.antialias = antialias_named(antialias);
+                 options.terrain_error = terrain_error;
+                 options.memory_limit = memory_limit;
+                 options.backend = backend;
+                 options.threads = threads;
+                 options.rectangle = rectangle;
+                 return Renderer(options);
+             }),
+             py::arg("width"), py::arg("height"), py::arg("antialias"), py::arg("terrain_error"),
+             py::arg("memory_limit"), py::arg("backend"), py::arg("threads"), py::arg("rectangle"))
+        .def(
+            "set_picture",
+            [](Renderer& renderer, int width, int height, const std::string& antialias) {
+                renderer.set_picture(width, height, antialias_named(antialias));
+            },
+            py::arg("width"), py::arg("height"), py::arg("antialias"))
+        .def("preprocess", &preprocess, py::arg("scene"), py::arg("progress"))
+        .def(
+            "update",
+            [](Renderer& renderer, const Camera& camera) {
+                const UpdateReport report = renderer.update(camera);
+                py::dict result;
+                result["pieces"] = report.pieces;
+                result["bytes"] = report.bytes;
+                return result;
+            },
+            py::arg("camera"))
+        .def(
+            "render",
+            [](Renderer& renderer, const std::array<float, 4>& low, const std::array<float, 4>& high) {
+                return renderer.render(Background{low, high});
+            },
+            py::arg("sky_low"), py::arg("sky_high"))
+        .def("time_floor", &Renderer::time_floor);
+}
+
+}  // namespace decalgl::bindings

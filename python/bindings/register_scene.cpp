@@ -1,0 +1,97 @@
+// Scenes: terrain and layers as NumPy arrays.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "decalgl/core/error.h"
+#include "decalgl/frame/scene.h"
+#include "register.h"
+
+namespace py = pybind11;
+
+namespace decalgl::bindings {
+namespace {
+
+template <typename T>
+using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+template <typename T>
+Span<const T> span_of(const Array<T>& array) {
+    return {array.data(), static_cast<size_t>(array.size())};
+}
+
+template <typename T>
+std::vector<T> vector_of(const Array<T>& array) {
+    return std::vector<T>(array.data(), array.data() + array.size());
+}
+
+struct FeatureArrays {
+    Array<double> coordinates;
+    Array<int64_t> part_offsets;
+    Array<int64_t> feature_offsets;
+    Array<int64_t> rows;
+};
+
+// The arrays may be let go by a thread that does not hold the interpreter.
+std::shared_ptr<const FeatureArrays> keep(FeatureArrays arrays) {
+    return {new FeatureArrays(std::move(arrays)), [](const FeatureArrays* held) {
+                const py::gil_scoped_acquire interpreter;
+                delete held;
+            }};
+}
+
+Heightfield make_terrain(const Array<float>& heights, double x0, double y0, double dx, double dy) {
+    if (heights.ndim() != 2) throw Error(ErrorKind::input, "terrain: heights must have two dimensions");
+    return Heightfield(vector_of(heights), static_cast<int32_t>(heights.shape(0)),
+                       static_cast<int32_t>(heights.shape(1)), x0, y0, dx, dy);
+}
+
+void add_layer(Scene& scene, const std::string& name, bool polygons, const Array<double>& coordinates,
+               const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets, const Array<int64_t>& rows,
+               const Array<uint8_t>& colors, const Array<double>& widths, const Array<int64_t>& draw_order) {
+    const auto arrays = keep({coordinates, part_offsets, feature_offsets, rows});
+    Layer layer;
+    layer.name = name;
+    layer.features.kind = polygons ? FeatureKind::polygons : FeatureKind::lines;
+    layer.features.coordinates = span_of(arrays->coordinates);
+    layer.features.part_offsets = span_of(arrays->part_offsets);
+    layer.features.feature_offsets = span_of(arrays->feature_offsets);
+    layer.features.rows = span_of(arrays->rows);
+    layer.features.storage = arrays;
+    layer.colors = vector_of(colors);
+    layer.widths = vector_of(widths);
+    layer.draw_order = vector_of(draw_order);
+    validate(layer);
+    scene.layers.push_back(std::move(layer));
+}
+
+}  // namespace
+
+void register_scene(py::module_& module) {
+    py::class_<Relief>(module, "Relief")
+        .def(py::init<>())
+        .def_readwrite("color", &Relief::color)
+        .def_readwrite("ramp", &Relief::ramp)
+        .def_readwrite("lowest", &Relief::lowest)
+        .def_readwrite("highest", &Relief::highest)
+        .def_readwrite("azimuth", &Relief::azimuth)
+        .def_readwrite("altitude", &Relief::altitude)
+        .def_readwrite("strength", &Relief::strength)
+        .def_readwrite("on_layers", &Relief::on_layers);
+
+    py::class_<Scene>(module, "Scene")
+        .def(py::init([](const Array<float>& heights, double x0, double y0, double dx, double dy, double exaggeration,
+                         const Relief& relief) {
+                 Scene scene;
+                 scene.terrain = make_terrain(heights, x0, y0, dx, dy);
+                 scene.exaggeration = exaggeration;
+                 scene.relief = relief;
+                 return scene;
+             }),
+             py::arg("heights"), py::arg("x0"), py::arg("y0"), py::arg("dx"), py::arg("dy"), py::arg("exaggeration"),
+             py::arg("relief"))
+        .def("add_layer", &add_layer, py::arg("name"), py::arg("polygons"), py::arg("coordinates"),
+             py::arg("part_offsets"), py::arg("feature_offsets"), py::arg("rows"), py::arg("colors"), py::arg("widths"),
+             py::arg("draw_order"));
+}
+
+}  // namespace decalgl::bindings

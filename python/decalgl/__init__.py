@@ -1,0 +1,63 @@
+"""decalgl: very large 2D vector maps, draped exactly on 3D terrain at the resolution of the screen.
+
+    import decalgl as dg
+
+    terrain = dg.Terrain.open("dem.tif")
+    scene = dg.Scene(terrain)
+    scene.add_polygons("landcover.gpkg", column="kind", cmap="Greens")
+    scene.add_lines("roads.gpkg", color="crimson", width=6, width_units="m")
+    scene.render(scene.home(), size=(1920, 1080)).save("map.png")
+"""
+
+from ._core import __version__
+from .camera import Camera
+from .coloring import Coloring
+from .doctor import Diagnosis, doctor
+from .errors import (
+    CancelledError,
+    ColumnError,
+    CrsError,
+    DecalError,
+    DecalWarning,
+    FileError,
+    GraphicsError,
+    InputError,
+    MemoryLimitError,
+    StyleError,
+    UnsupportedError,
+)
+from .features import FeatureTable
+from .frame import Frame, Picked, Stats
+from .renderer import Renderer
+from .scene import Layer, Relief, Scene
+from .scene_file import load_scene
+from .terrain import Terrain
+
+__all__ = [
+    "Camera",
+    "CancelledError",
+    "Coloring",
+    "ColumnError",
+    "CrsError",
+    "DecalError",
+    "DecalWarning",
+    "Diagnosis",
+    "FeatureTable",
+    "FileError",
+    "Frame",
+    "GraphicsError",
+    "InputError",
+    "Layer",
+    "MemoryLimitError",
+    "Picked",
+    "Relief",
+    "Renderer",
+    "Scene",
+    "Stats",
+    "StyleError",
+    "Terrain",
+    "UnsupportedError",
+    "__version__",
+    "doctor",
+    "load_scene",
+]

@@ -1,0 +1,91 @@
+"""The C++ core. Use the classes of the package decalgl instead."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+class Relief:
+    color: Sequence[int]
+    ramp: Sequence[int]
+    lowest: float
+    highest: float
+    azimuth: float
+    altitude: float
+    strength: float
+    on_layers: float
+    def __init__(self) -> None: ...
+
+class Scene:
+    def __init__(
+        self,
+        heights: NDArray[np.float32],
+        x0: float,
+        y0: float,
+        dx: float,
+        dy: float,
+        exaggeration: float,
+        relief: Relief,
+    ) -> None: ...
+    def add_layer(
+        self,
+        name: str,
+        polygons: bool,
+        coordinates: NDArray[np.float64],
+        part_offsets: NDArray[np.int64],
+        feature_offsets: NDArray[np.int64],
+        rows: NDArray[np.int64],
+        colors: NDArray[np.uint8],
+        widths: NDArray[np.float64],
+        draw_order: NDArray[np.int64],
+    ) -> None: ...
+
+class Camera:
+    def __init__(
+        self,
+        eye: Sequence[float],
+        target: Sequence[float],
+        up: Sequence[float],
+        fov: float,
+        view_height: float,
+    ) -> None: ...
+
+class Frame:
+    @property
+    def image(self) -> NDArray[np.uint8]: ...
+    @property
+    def ids(self) -> NDArray[np.int64]: ...
+    @property
+    def layers(self) -> NDArray[np.int32]: ...
+    @property
+    def depth(self) -> NDArray[np.float32]: ...
+    @property
+    def world(self) -> NDArray[np.float64]: ...
+    @property
+    def stats(self) -> dict[str, Any]: ...
+    def pick(self, x: int, y: int) -> list[tuple[int, int]]: ...
+
+class Renderer:
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        antialias: str,
+        terrain_error: float,
+        memory_limit: int,
+        backend: str,
+        threads: int,
+        rectangle: int,
+    ) -> None: ...
+    def set_picture(self, width: int, height: int, antialias: str) -> None: ...
+    def preprocess(self, scene: Scene, progress: Callable[[str, float], bool | None] | None) -> None: ...
+    def update(self, camera: Camera) -> dict[str, int]: ...
+    def render(
+        self, sky_low: tuple[float, float, float, float], sky_high: tuple[float, float, float, float]
+    ) -> Frame: ...
+    def time_floor(self) -> float: ...
+
+def probe_backends() -> list[dict[str, Any]]: ...
