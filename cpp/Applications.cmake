@@ -21,15 +21,25 @@ if(geo_sources)
 endif()
 
 file(GLOB_RECURSE app_sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_LIST_DIR}/src/app/*.cpp")
+list(FILTER app_sources EXCLUDE REGEX "/main\\.cpp$")
 if(app_sources AND TARGET decalgl_geo)
     decalgl_require(PNG libpng-dev)
-    decalgl_require(TIFF libtiff-dev)
+    decalgl_require(TIFF libtiff-dev 4.5)
+    decalgl_require(ZLIB zlib1g-dev)
     decalgl_require(nlohmann_json nlohmann-json3-dev)
     decalgl_require(CLI11 libcli11-dev)
+    decalgl_require(ZLIB zlib1g-dev)
 
-    add_executable(decalgl_demo ${app_sources})
+    # All of the program but main, so that tests can call it.
+    add_library(decalgl_demo_parts STATIC ${app_sources})
+    decalgl_settings(decalgl_demo_parts)
+    target_link_libraries(
+        decalgl_demo_parts
+        PUBLIC decalgl_geo
+        PRIVATE decalgl_private PNG::PNG TIFF::TIFF ZLIB::ZLIB nlohmann_json::nlohmann_json)
+
+    add_executable(decalgl_demo "${CMAKE_CURRENT_LIST_DIR}/src/app/main.cpp")
     decalgl_settings(decalgl_demo)
-    target_link_libraries(decalgl_demo PRIVATE decalgl_geo decalgl_private PNG::PNG TIFF::TIFF
-                                               nlohmann_json::nlohmann_json CLI11::CLI11)
+    target_link_libraries(decalgl_demo PRIVATE decalgl_demo_parts decalgl_private CLI11::CLI11)
     install(TARGETS decalgl_demo COMPONENT development)
 endif()

@@ -8,4 +8,5 @@ PYBIND11_MODULE(_core, module) {
     decalgl::bindings::register_scene(module);
     decalgl::bindings::register_renderer(module);
     decalgl::bindings::register_doctor(module);
+    decalgl::bindings::register_bench(module);
 }

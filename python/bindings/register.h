@@ -9,5 +9,6 @@ void register_errors(pybind11::module_& module);
 void register_scene(pybind11::module_& module);
 void register_renderer(pybind11::module_& module);
 void register_doctor(pybind11::module_& module);
+void register_bench(pybind11::module_& module);
 
 }  // namespace decalgl::bindings

@@ -1,5 +1,8 @@
 // Errors of the core become the exceptions of decalgl.errors.
+#include <cctype>
 #include <new>
+#include <stdexcept>
+#include <string>
 
 #include "decalgl/core/error.h"
 #include "register.h"
@@ -23,9 +26,16 @@ const char* exception_name(ErrorKind kind) {
     return "DecalError";
 }
 
+// The core's messages are clauses; users read sentences.
+std::string sentence(std::string text) {
+    if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (!text.empty() && text.back() != '.') text += '.';
+    return text;
+}
+
 void raise(const char* name, const char* message) {
     const py::object type = py::module_::import("decalgl.errors").attr(name);
-    PyErr_SetString(type.ptr(), message);
+    PyErr_SetString(type.ptr(), sentence(message).c_str());
 }
 
 }  // namespace
@@ -36,6 +46,8 @@ void register_errors(py::module_&) {
             if (pending) std::rethrow_exception(pending);
         } catch (const Error& error) {
             raise(exception_name(error.kind()), error.what());
+        } catch (const std::length_error&) {
+            raise("MemoryLimitError", "this would be larger than memory can hold; draw less at once");
         } catch (const std::bad_alloc&) {
             raise("MemoryLimitError", "the machine has no memory left for this; draw less at once, or set memory_limit");
         }

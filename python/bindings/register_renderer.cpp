@@ -53,6 +53,8 @@ py::dict stats_of(const Frame& frame) {
         entry["ms"] = pass.ms;
         passes.append(entry);
     }
+    py::dict preprocess;
+    for (const TimedPass& pass : stats.preprocess) preprocess[py::str(pass.name)] = pass.ms;
     py::dict stages;
     stages["preprocess"] = stats.preprocess_ms;
     stages["update"] = stats.update_ms;
@@ -65,6 +67,7 @@ py::dict stats_of(const Frame& frame) {
     py::dict result;
     result["passes"] = passes;
     result["stages"] = stages;
+    result["preprocess"] = preprocess;
     result["bytes"] = bytes;
     result["counts"] = counts;
     result["variants"] = stats.variants;

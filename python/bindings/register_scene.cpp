@@ -2,6 +2,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "decalgl/core/error.h"
 #include "decalgl/frame/scene.h"
 #include "register.h"
@@ -48,6 +50,10 @@ Heightfield make_terrain(const Array<float>& heights, double x0, double y0, doub
 void add_layer(Scene& scene, const std::string& name, bool polygons, const Array<double>& coordinates,
                const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets, const Array<int64_t>& rows,
                const Array<uint8_t>& colors, const Array<double>& widths, const Array<int64_t>& draw_order) {
+    if (coordinates.ndim() != 2 || coordinates.shape(1) != 2)
+        throw Error(ErrorKind::input, "layer '" + name + "': coordinates must have the shape (vertices, 2)");
+    if (std::any_of(rows.data(), rows.data() + rows.size(), [](int64_t row) { return row < 0; }))
+        throw Error(ErrorKind::input, "layer '" + name + "': row numbers must be 0 or more");
     const auto arrays = keep({coordinates, part_offsets, feature_offsets, rows});
     Layer layer;
     layer.name = name;

@@ -1,12 +1,12 @@
 """decalgl: very large 2D vector maps, draped exactly on 3D terrain at the resolution of the screen.
 
-    import decalgl as dg
+import decalgl as dg
 
-    terrain = dg.Terrain.open("dem.tif")
-    scene = dg.Scene(terrain)
-    scene.add_polygons("landcover.gpkg", column="kind", cmap="Greens")
-    scene.add_lines("roads.gpkg", color="crimson", width=6, width_units="m")
-    scene.render(scene.home(), size=(1920, 1080)).save("map.png")
+terrain = dg.Terrain.open("dem.tif")
+scene = dg.Scene(terrain)
+scene.add_polygons("landcover.gpkg", column="kind", cmap="Greens")
+scene.add_lines("roads.gpkg", color="crimson", width=6, width_units="m")
+scene.render(scene.home(), size=(1920, 1080)).save("map.png")
 """
 
 from ._core import __version__

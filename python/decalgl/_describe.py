@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from rich.table import Table
 from rich.text import Text
 
+from ._paths import gdal_name
+from ._sources import guarded_name
 from .errors import FileError
 from .scene_file import data_path, read_scene_file
 
@@ -62,7 +64,7 @@ def _describe_raster(name: str) -> list[Table]:
     import rasterio
 
     try:
-        with rasterio.open(name) as raster:
+        with rasterio.open(gdal_name(name)) as raster:
             table = _table(f"{Path(name).name}: raster, {raster.driver}")
             _row(table, "samples", f"{raster.width} columns × {raster.height} rows, {raster.count} band(s)")
             _row(table, "type", ", ".join(dict.fromkeys(raster.dtypes)))
@@ -80,13 +82,14 @@ def _describe_vector(name: str) -> list[Table]:
         return [_describe_parquet(name)]
     import pyogrio
 
+    source = guarded_name(name)
     try:
-        layers = pyogrio.list_layers(name)
+        layers = pyogrio.list_layers(source)
     except pyogrio.errors.DataSourceError:
         return []
     tables = []
     for layer, _ in layers:
-        found = pyogrio.read_info(name, layer=layer, force_feature_count=True, force_total_bounds=True)
+        found = pyogrio.read_info(source, layer=layer, force_feature_count=True, force_total_bounds=True)
         table = _table(f"{Path(name).name}: vector layer {layer}, {found.get('driver')}")
         _row(table, "features", f"{found['features']:,}")
         _row(table, "geometry", found["geometry_type"])

@@ -3,7 +3,7 @@
 GEOS and others read collections recursively, so a few hundred kilobytes of collections in collections
 overflow the stack and end the process. Layers hold no collections anyway, so the guards never recurse:
 
-    JSON text   brackets are counted, outside strings, before GDAL reads the file
+    JSON text   brackets are counted, outside strings, before GDAL reads the file, in a .gz too
     WKB         a collection is refused at its first header; members of a multi geometry must be simple
     WKT         the word GEOMETRYCOLLECTION and deep brackets are refused
     objects     coordinates of __geo_interface__ are followed down to their depth in a loop
@@ -23,7 +23,8 @@ from .errors import FileError, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
+
+    from ._paths import Readable
 
 DEEPEST_JSON = 128
 DEEPEST_COORDINATES = 4
@@ -39,31 +40,33 @@ MEMBERS = {4: 1, 5: 2, 6: 3}
 NOT_BRACKETS = bytes(byte for byte in range(256) if byte not in b"[]{}")
 
 
-def check_json_file(path: Path) -> None:
-    """Raise FileError when the JSON text in `path` nests deeper than any geometry does."""
-    with path.open("rb") as stream:
-        start = stream.read(1024).lstrip(b"\xef\xbb\xbf\x1e \t\r\n")
-        if not start.startswith((b"{", b"[")):
-            return
-        stream.seek(0)
-        depth, in_string = 0, False
-        while chunk := stream.read(CHUNK_BYTES):
-            while chunk.endswith(b"\\") and (more := stream.read(1)):
-                chunk += more
-            # Escaped characters go first, so that every quote left opens or closes a string.
-            pieces = chunk.replace(b"\\\\", b"").replace(b'\\"', b"").split(b'"')
-            outside = b"".join(pieces[1 if in_string else 0 :: 2])
-            in_string ^= len(pieces) % 2 == 0
-            brackets = np.frombuffer(outside.translate(None, NOT_BRACKETS), dtype=np.uint8)
-            steps = np.where((brackets == ord("[")) | (brackets == ord("{")), 1, -1)
-            depths = depth + np.cumsum(steps)
-            if depths.size:
-                if int(depths.max()) > DEEPEST_JSON:
-                    raise FileError(
-                        f"{str(path)!r} nests brackets more than {DEEPEST_JSON} deep, which no map layer"
-                        " needs, so it is not opened. Write its geometry collections out as single features."
-                    )
-                depth = int(depths[-1])
+def check_json(stream: Readable, name: str) -> None:
+    """Raise FileError when `stream` is JSON text that nests deeper than any geometry does.
+
+    Reads to the end of what starts like JSON and only the start of anything else. name: for messages.
+    """
+    chunk = stream.read(1024)
+    if not chunk.lstrip(b"\xef\xbb\xbf\x1e \t\r\n").startswith((b"{", b"[")):
+        return
+    depth, in_string = 0, False
+    while chunk:
+        while chunk.endswith(b"\\") and (more := stream.read(1)):
+            chunk += more
+        # Escaped characters go first, so that every quote left opens or closes a string.
+        pieces = chunk.replace(b"\\\\", b"").replace(b'\\"', b"").split(b'"')
+        outside = b"".join(pieces[1 if in_string else 0 :: 2])
+        in_string ^= len(pieces) % 2 == 0
+        brackets = np.frombuffer(outside.translate(None, NOT_BRACKETS), dtype=np.uint8)
+        steps = np.where((brackets == ord("[")) | (brackets == ord("{")), 1, -1)
+        depths = depth + np.cumsum(steps)
+        if depths.size:
+            if int(depths.max()) > DEEPEST_JSON:
+                raise FileError(
+                    f"{name!r} nests brackets more than {DEEPEST_JSON} deep, which no map layer needs, so it"
+                    " is not opened. Write its geometry collections out as single features."
+                )
+            depth = int(depths[-1])
+        chunk = stream.read(CHUNK_BYTES)
 
 
 def wkb_type(blob: bytes, position: int = 0) -> int:

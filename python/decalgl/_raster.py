@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._paths import gdal_name, is_virtual
 from ._warp import AffineMap
-from .errors import DecalWarning, FileError, InputError, MemoryLimitError
+from .errors import FileError, InputError, MemoryLimitError, warn
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,7 +56,7 @@ def read_band(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         try:
-            with rasterio.open(name) as dataset:
+            with rasterio.open(gdal_name(name)) as dataset:
                 return _read(dataset, name, band, window, max_samples, nodata)
         except rasterio.errors.RasterioIOError as error:
             raise _unreadable(name, error) from error
@@ -68,11 +69,6 @@ def _unreadable(name: str, error: Exception) -> FileError:
         f"{name!r} cannot be read as a raster: {error}. Give a whole raster file of a format that GDAL reads,"
         " such as GeoTIFF; gdalinfo shows what GDAL makes of it."
     )
-
-
-def is_virtual(name: str) -> bool:
-    """Whether GDAL resolves `name` itself (an archive member, an address, a subdataset)."""
-    return name.startswith("/vsi") or "://" in name or (":" in name and not Path(name).drive)
 
 
 def _read(
@@ -148,15 +144,15 @@ def _check_size(dataset: Any, name: str, band: int, area: Any, max_samples: int 
             f" {size_text(stored)}, so nearly all of it is empty. {cure}"
         )
     # The samples as stored, their mask, and the heights live side by side for a moment.
-    check_memory(count * (item + 1 + 8), f"{name!r} declares {shape} samples, which", cure)
+    check_memory(count * (item + 1 + 8), f"{name!r} declares {shape} samples, which", "read", cure)
 
 
-def check_memory(needed: int, what: str, cure: str) -> None:
-    """Raise MemoryLimitError when `needed` bytes are not available."""
+def check_memory(needed: int, what: str, purpose: str, cure: str) -> None:
+    """Raise MemoryLimitError when `needed` bytes, to do `purpose` with `what`, are not available."""
     available = available_memory()
     if available is not None and needed > available:
         raise MemoryLimitError(
-            f"{what} would take {size_text(needed)} of memory to read, and {size_text(available)} are"
+            f"{what} would take {size_text(needed)} of memory to {purpose}, and {size_text(available)} are"
             f" available. {cure}"
         )
 
@@ -249,11 +245,9 @@ def check_finite(heights: NDArray[np.float32], what: str, prefix: str = "") -> N
 
 
 def _warn_of_no_place(name: str) -> None:
-    warnings.warn(
+    warn(
         f"{name!r} has no georeference: its samples are taken to lie 1 m apart, the lower left corner at"
-        " (0, 0).",
-        DecalWarning,
-        stacklevel=5,
+        " (0, 0)."
     )
 
 

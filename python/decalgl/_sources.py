@@ -16,18 +16,19 @@ import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _nesting
 from ._crs import parse_crs
+from ._paths import Unpacked, gdal_name, real_file
 from ._ragged import Ragged
-from ._raster import is_virtual
 from .errors import ColumnError, FileError, InputError, close_matches
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
 PARQUET_SUFFIXES = (".parquet", ".geoparquet")
@@ -255,7 +256,7 @@ def _from_plain(data: Any, layer_name: str) -> Source:
             )
         data = (data["coords"], data["offsets"])
     try:
-        coords = np.asarray(data[0], dtype=np.float64)
+        coords = np.array(data[0], dtype=np.float64)  # a copy: the user's array may change later
         offsets = np.asarray(data[1])
     except (TypeError, ValueError) as error:
         raise InputError(
@@ -278,15 +279,27 @@ def _from_plain(data: Any, layer_name: str) -> Source:
 
 def _from_path(data: Any, layer_name: str, file_layer: str | int | None) -> Source:
     name = os.fspath(data)
-    path = Path(name)
-    if not is_virtual(name):
-        if not path.exists():
-            raise FileError(f"There is no file {name!r} to read layer {layer_name!r} from. Check the path.")
-        if path.suffix.lower() in PARQUET_SUFFIXES + FEATHER_SUFFIXES:
-            return _from_arrow(_arrow_file(path, name), layer_name)
-        if path.is_file():
-            _nesting.check_json_file(path)
-    return _from_ogr(name, layer_name, file_layer)
+    path = real_file(name)
+    if path is not None and not path.exists():
+        raise FileError(f"There is no file {name!r} to read layer {layer_name!r} from. Check the path.")
+    if path is not None and path.suffix.lower() in PARQUET_SUFFIXES + FEATHER_SUFFIXES:
+        return _from_arrow(_arrow_file(path, name), layer_name)
+    return _from_ogr(guarded_name(name), layer_name, file_layer)
+
+
+def guarded_name(name: str) -> str:
+    """`name` as GDAL takes it. Raises FileError for what would harm a parser: nesting without end, bombs."""
+    path = real_file(name)
+    if path is not None and path.is_file():
+        try:
+            with Unpacked(path) as stream:
+                _nesting.check_json(stream, str(path))
+                if stream.packed:
+                    for _ in stream.rest():
+                        pass
+        except PermissionError as error:
+            raise FileError(f"{name!r} cannot be read: {error.strerror}. Check its rights.") from error
+    return gdal_name(name)
 
 
 def _from_ogr(name: str, layer_name: str, file_layer: str | int | None) -> Source:

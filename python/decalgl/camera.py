@@ -31,7 +31,10 @@ UP: Point = (0.0, 0.0, 1.0)
 NORTH: Point = (0.0, 1.0, 0.0)
 # Closer than this (radians) to straight up or down, "up" has no direction in the picture.
 VERTICAL = 1e-6
+NARROWEST = 1e-9  # degrees; a narrower field of view, or one as close to 180, is taken for a mistake
 TOP_DOWN_HEIGHT = 100_000.0
+# Metres: a camera's numbers stay between these, so that no product of them over- or underflows.
+CLOSEST, FARTHEST = 1e-9, 1e12
 
 
 @dataclass(frozen=True)
@@ -57,19 +60,22 @@ class Camera:
     def __post_init__(self) -> None:
         for name in ("eye", "target"):
             object.__setattr__(self, name, _point(getattr(self, name), name))
-        if self.eye == self.target:
+        if math.dist(self.eye, self.target) < CLOSEST:
             raise InputError(
                 f"eye and target are the same point {self.eye}, so there is no direction. Move one of them."
             )
         object.__setattr__(self, "up", self._upright())
         if self.fov is not None:
             object.__setattr__(self, "fov", _number(self.fov, "fov"))
-            if not 0.0 < self.fov < 180.0:
+            if not NARROWEST < self.fov < 180.0 - NARROWEST:
                 raise InputError(f"fov must lie between 0 and 180 degrees, but it is {self.fov}.")
         if self.view_height is not None:
             object.__setattr__(self, "view_height", _number(self.view_height, "view_height"))
-            if self.view_height <= 0.0:
-                raise InputError(f"view_height must be larger than 0 metres, but it is {self.view_height}.")
+            if not CLOSEST <= self.view_height <= FARTHEST:
+                raise InputError(
+                    f"view_height must be larger than 0 metres (up to {FARTHEST:g}), but it is"
+                    f" {self.view_height}."
+                )
         if self.fov is None and self.view_height is None and self.bounds is None:
             raise InputError(
                 "An orthographic camera (fov=None) needs a view_height in metres, or bounds to fit."
@@ -92,13 +98,12 @@ class Camera:
     ) -> Camera:
         """A perspective camera at `eye` that looks at `target`, both (x, y, z) in metres.
 
-        fov: vertical field of view, degrees. up: the direction upwards in the picture; by default z, or
-            north when
-        looking straight down. Raises InputError (not finite, eye and target equal, fov, up along the view).
+        fov: vertical field of view, degrees.
+        up: the direction upwards in the picture; by default z, or north when looking straight down.
+        Raises InputError (not finite, eye and target equal, fov, up along the view).
         """
-        settled: Any = (
-            None if up is None else _point(up, "up")
-        )  # None is settled once eye and target are known
+        # None is settled once eye and target are known.
+        settled: Any = None if up is None else _point(up, "up")
         return cls(_point(eye, "eye"), _point(target, "target"), settled, fov)
 
     @classmethod
@@ -107,19 +112,17 @@ class Camera:
     ) -> Camera:
         """A perspective camera on a sphere around `target`.
 
-        distance: metres from the target. azimuth: where the camera stands, degrees clockwise from north, so
-            180
-        stands in the south and looks north. elevation: degrees above the horizon, -90 to 90.
+        distance: metres from the target.
+        azimuth: where the camera stands, degrees clockwise from north: at 180 it looks north.
+        elevation: degrees above the horizon, -90 to 90.
         """
         centre = _point(target, "target")
         reach = _number(distance, "distance")
-        bearing, rise = (
-            math.radians(_number(azimuth, "azimuth")),
-            math.radians(_number(elevation, "elevation")),
-        )
+        bearing = math.radians(_number(azimuth, "azimuth"))
+        rise = math.radians(_number(elevation, "elevation"))
         if reach <= 0.0:
             raise InputError(f"distance must be larger than 0 metres, but it is {distance}.")
-        if abs(elevation) > 90.0:
+        if abs(rise) > math.pi / 2.0:
             raise InputError(f"elevation must lie between -90 and 90 degrees, but it is {elevation}.")
         east, north, height = math.sin(bearing), math.cos(bearing), math.sin(rise)
         level = math.cos(rise)
@@ -155,7 +158,7 @@ class Camera:
 
     def for_size(self, size: tuple[int, int]) -> Camera:
         """This camera with its view_height settled for a picture of `size` (width, height) in pixels."""
-        width, height = _size(size)
+        width, height = checked_size(size)
         if self.bounds is None or self.view_height is not None:
             return self
         west, south, east, north = self.bounds
@@ -192,7 +195,7 @@ class Camera:
         depth t is at origin + t * direction.
         """
         camera = self.for_size(size)
-        width, height = _size(size)
+        width, height = checked_size(size)
         positions = _table(xy, 2, "xy")
         right, up, forward = camera.basis()
         half_height = camera._half_height()
@@ -213,7 +216,7 @@ class Camera:
         not positive.
         """
         camera = self.for_size(size)
-        width, height = _size(size)
+        width, height = checked_size(size)
         right, up, forward = camera.basis()
         local = _table(points, 3, "points") - np.array(camera.eye)
         depth = local @ forward
@@ -253,6 +256,8 @@ def _numbers(values: Any, count: int, name: str, shape: str) -> tuple[float, ...
 
 def _point(values: Any, name: str) -> Point:
     x, y, z = _numbers(values, 3, name, "(x, y, z)")
+    if max(abs(x), abs(y), abs(z)) > FARTHEST:
+        raise InputError(f"{name} {(x, y, z)} lies more than {FARTHEST:g} m from the origin. Move it closer.")
     return (x, y, z)
 
 
@@ -262,10 +267,12 @@ def _bounds(values: Any) -> tuple[float, float, float, float]:
         raise InputError(
             f"bounds must have xmin < xmax and ymin < ymax, but it is {(west, south, east, north)}."
         )
+    _point((max(abs(west), abs(east)), max(abs(south), abs(north)), 0.0), "bounds")
     return (west, south, east, north)
 
 
-def _size(size: Any) -> tuple[int, int]:
+def checked_size(size: Any) -> tuple[int, int]:
+    """(width, height) of a picture in pixels, at least 1 each. Raises InputError."""
     try:
         width, height = (int(value) for value in size)
         whole = width == size[0] and height == size[1]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ._colors import Rgba, alpha_values, colormap, parse_color, parse_colors
-from .errors import DecalWarning, StyleError, close_matches
+from .errors import StyleError, close_matches, warn
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -101,13 +101,7 @@ def resolve_colors(
     """
     title = column if isinstance(column, str) else str(getattr(column, "name", None) or "")
     if column is not None and color is not None:
-        import warnings
-
-        warnings.warn(
-            "Both color= and column= are given; color= is used, as GeoPandas does.",
-            DecalWarning,
-            stacklevel=4,
-        )
+        warn("Both color= and column= are given; color= is used, as GeoPandas does.")
         column = None
     if column is None:
         painted, title = _painted_plain(count, DEFAULT_COLOR if color is None else color), ""

@@ -8,6 +8,8 @@ was wrong, where, and what to do about it.
 from __future__ import annotations
 
 import difflib
+import sys
+import warnings
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -60,6 +62,15 @@ class UnsupportedError(DecalError, NotImplementedError):
 
 class DecalWarning(UserWarning):
     """Something was left out or assumed; the message carries the counts."""
+
+
+def warn(message: str) -> None:
+    """A DecalWarning that points at the line outside this package that called into it."""
+    package, depth = __name__.rpartition(".")[0], 2
+    frame = sys._getframe(1)
+    while frame.f_back is not None and f"{frame.f_globals.get('__name__')}.".startswith(f"{package}."):
+        frame, depth = frame.f_back, depth + 1
+    warnings.warn(message, DecalWarning, stacklevel=depth)
 
 
 def close_matches(name: object, known: Iterable[object]) -> str:

@@ -10,7 +10,6 @@ read_features(data, "polygons", terrain_crs=terrain.crs, layer_name="parks")
 from __future__ import annotations
 
 import logging
-import warnings
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -20,7 +19,7 @@ from . import _ragged, _sources
 from ._crs import name_of, parse_crs, same_crs, transform_xy
 from ._ragged import Ragged
 from ._sources import Attributes
-from .errors import CrsError, DecalWarning, InputError
+from .errors import CrsError, InputError, warn
 
 if TYPE_CHECKING:
     import pyproj
@@ -272,9 +271,7 @@ def _warn_of_gaps(
     if not reasons and not vanished:
         return
     gone = null + empty + vanished
-    warnings.warn(
+    warn(
         f"Layer {layer_name!r}: {gone} of {count} features are not drawn; left out were "
-        f"{', '.join(reasons) or 'features without parts'}.",
-        DecalWarning,
-        stacklevel=5,
+        f"{', '.join(reasons) or 'features without parts'}."
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ._raster import check_memory
 from .errors import FileError, InputError
 
 if TYPE_CHECKING:
@@ -14,6 +15,12 @@ if TYPE_CHECKING:
 
     from . import _core
     from .scene import Layer
+
+
+# While they are made, the surface takes 60 bytes a pixel and the ids 16 and 4 more a technique.
+BYTES_PER_PIXEL = 64
+KEEP_ALPHA = ("PNG", "WEBP", "TIFF")
+LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 
 
 @dataclass(frozen=True)
@@ -33,14 +40,17 @@ class Stats:
 
     passes: [{"name", "ms"}] of the passes that ran, in order; each waits for the driver.
     stages: milliseconds of preprocess, update, render (without reading back) and readback.
+    preprocess: milliseconds of its parts: the terrain and each technique.
     bytes: held by each technique, the terrain and the frame, prepared data and GL objects together.
     objects: the same, object by object.
-    counts: triangles, features, segments, pieces, prepared_bytes, and quantum_m, how far a vertex may have moved.
+    counts: triangles, features, segments, pieces, prepared_bytes, and quantum_m, how far a vertex may have
+        moved.
     variants: the program variants compiled so far.
     """
 
     passes: list[dict[str, Any]]
     stages: dict[str, float]
+    preprocess: dict[str, float]
     bytes: dict[str, int]
     objects: dict[str, int]
     counts: dict[str, float]
@@ -51,6 +61,7 @@ class Stats:
         return {
             "passes": [dict(one) for one in self.passes],
             "stages": dict(self.stages),
+            "preprocess": dict(self.preprocess),
             "bytes": dict(self.bytes),
             "objects": dict(self.objects),
             "counts": dict(self.counts),
@@ -61,12 +72,14 @@ class Stats:
 class Frame:
     """One picture. Arrays are read-only, row 0 at the top; all but the image are made when first read.
 
-    They stay right after the renderer has gone on to other views or scenes; read them on the renderer's thread.
+    They stay right after the renderer has gone on to other views or scenes; read them on the renderer's
+    thread. Reading raises MemoryLimitError where an array does not fit.
     """
 
     def __init__(self, core: _core.Frame, layers: tuple[Layer, ...]) -> None:
         self._core = core
         self._layers = layers
+        self._read: set[str] = set()
 
     @property
     def size(self) -> tuple[int, int]:
@@ -81,26 +94,33 @@ class Frame:
 
     @property
     def ids(self) -> NDArray[np.int64]:
-        """(height, width): row of the topmost feature at each pixel's centre in its layer's data, -1 for none."""
+        """(height, width): row in its layer's data of the topmost feature at each pixel's centre; or -1."""
+        self._check_memory("ids")
         return self._core.ids
 
     @property
     def layers(self) -> NDArray[np.int32]:
         """(height, width): place in the scene of the layer that `ids` belongs to, -1 for none."""
+        self._check_memory("layers")
         return self._core.layers
 
     @property
     def depth(self) -> NDArray[np.float32]:
         """(height, width): planar eye depth in metres, inf where there is sky."""
+        self._check_memory("depth")
         return self._core.depth
 
     @property
     def world(self) -> NDArray[np.float64]:
-        """(height, width, 3): scene coordinates of the surface at each pixel's centre, NaN where there is sky."""
+        """(height, width, 3): scene coordinates of the surface at each pixel's centre, NaN: sky."""
+        self._check_memory("world")
         return self._core.world
 
     def pick(self, x: int, y: int) -> list[Picked]:
-        """Every feature at the centre of pixel (x, y), topmost first. Raises InputError outside the picture."""
+        """Every feature at the centre of pixel (x, y), topmost first.
+
+        Raises InputError outside the picture.
+        """
         try:
             column, row = int(x), int(y)
             whole = column == x and row == y
@@ -109,8 +129,10 @@ class Frame:
         width, height = self.size
         if not whole or not (0 <= column < width and 0 <= row < height):
             raise InputError(
-                f"({x!r}, {y!r}) is no pixel of this picture. Give whole numbers from (0, 0) to ({width - 1}, {height - 1})."
+                f"({x!r}, {y!r}) is no pixel of this picture. Give whole numbers from (0, 0) to"
+                f" ({width - 1}, {height - 1})."
             )
+        self._check_memory("pick")
         return [Picked(self._layers[layer], feature) for layer, feature in self._core.pick(column, row)]
 
     @property
@@ -122,22 +144,47 @@ class Frame:
             owner = name.split(":")[0]
             owners[owner] = owners.get(owner, 0) + count
         return Stats(
-            given["passes"], given["stages"], owners, given["bytes"], given["counts"], list(given["variants"])
+            passes=given["passes"],
+            stages=given["stages"],
+            preprocess=given["preprocess"],
+            bytes=owners,
+            objects=given["bytes"],
+            counts=given["counts"],
+            variants=list(given["variants"]),
         )
 
     def save(self, path: str | Path) -> None:
-        """Writes the image in the format of the file's ending; PNG keeps alpha. Raises FileError."""
+        """Writes the image in the format of the file's ending, such as .png, .jpg or .tif.
+
+        PNG, WebP and TIFF keep alpha; in other formats what is transparent becomes white. Raises FileError.
+        """
         from PIL import Image
 
         path = Path(path)
+        ending = path.suffix.lower()
+        file_format = Image.registered_extensions().get(ending)
+        if file_format not in Image.SAVE:
+            raise FileError(
+                f"Cannot write {path}: no picture format is known by the ending {ending!r}. Use .png."
+            )
         picture = Image.fromarray(self.image)
-        if path.suffix.lower() in (".jpg", ".jpeg"):
-            picture = picture.convert("RGB")
+        if file_format not in KEEP_ALPHA:
+            white = Image.new("RGBA", picture.size, "white")
+            picture = Image.alpha_composite(white, picture).convert("RGB")
         try:
             picture.save(path)
-        except ValueError as error:
-            raise FileError(
-                f"Cannot write {path}: no picture format is known by the ending {path.suffix!r}. Use .png."
-            ) from error
-        except OSError as error:
-            raise FileError(f"Cannot write {path}: {error.strerror or error}. Check the folder and its rights.") from error
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            raise FileError(f"Cannot write {path}: {reason}. Check the folder and its rights.") from error
+
+    def _check_memory(self, what: str) -> None:
+        if what in self._read or self._core.image.nbytes < 4 * LARGE_PICTURE:
+            return
+        width, height = self.size
+        check_memory(
+            BYTES_PER_PIXEL * width * height,
+            f"{what} of a picture of {width} x {height} pixels",
+            "read",
+            "Draw a smaller picture.",
+        )
+        self._read.add(what)

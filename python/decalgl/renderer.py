@@ -1,7 +1,7 @@
 """The renderer: preprocess a scene, update to a camera, render a frame.
 
-    scene ──▶ preprocess ──▶ update(camera) ──▶ render ──▶ Frame
-              all cores, no GL   GL from here on
+scene ──▶ preprocess ──▶ update(camera) ──▶ render ──▶ Frame
+          all cores, no GL   GL from here on
 """
 
 from __future__ import annotations
@@ -12,20 +12,29 @@ import numpy as np
 
 from . import _core
 from ._colors import colormap, parse_color
+from ._raster import check_memory
+from .camera import checked_size
 from .errors import CancelledError, InputError, UnsupportedError
 from .frame import Frame
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping
 
     from .camera import Camera
     from .scene import Layer, Scene
 
     Rgba = tuple[float, float, float, float]
+    Progress = Callable[[str, float], bool | None]
 
 ANTIALIAS = ("none", "coverage")
 PLANNED_ANTIALIAS = ("msaa", "ssaa", "fxaa")
-SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))  # at the horizon, 45 degrees above it
+BACKENDS = ("auto", "egl", "osmesa")
+# At the horizon, and 45 degrees above it.
+SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))
+MOST_THREADS = 1024
+LARGEST_SIDE = 1 << 20
+LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
+IMAGE_BYTES, SURFACE_BYTES, TARGET_SIDE = 4, 64, 4096
 
 
 class Renderer:
@@ -40,6 +49,7 @@ class Renderer:
     tile: larger pictures are drawn in squares of this many pixels; None: chosen. The picture is the same.
 
     Call everything but `preprocess` from one thread. A call that fails leaves the renderer usable.
+    Raises InputError for arguments out of range, UnsupportedError for what this version does not draw.
     """
 
     def __init__(
@@ -52,43 +62,48 @@ class Renderer:
         threads: int | None = None,
         tile: int | None = None,
     ) -> None:
-        width, height = _checked_size(size)
-        given = {
+        if backend not in BACKENDS:
+            raise InputError(f"There is no backend {backend!r}; choose 'auto', 'egl' or 'osmesa'.")
+        width, height = _checked_picture(size)
+        self._options = {
             "terrain_error": terrain_error,
             "memory_limit": memory_limit,
             "backend": backend,
             "threads": threads,
             "tile": tile,
         }
-        defaults = {"terrain_error": 0.5, "backend": "auto"}
-        self.keywords = {name: value for name, value in given.items() if value != defaults.get(name)}
-        if backend not in ("auto", "egl", "osmesa"):
-            raise InputError(f"There is no backend {backend!r}; choose 'auto', 'egl' or 'osmesa'.")
-        self.size = (width, height)
         self._core = _core.Renderer(
             width=width,
             height=height,
             antialias=_checked_antialias(antialias),
-            terrain_error=_at_least(terrain_error, 0.0, "terrain_error"),
-            memory_limit=int(_at_least(memory_limit or 0, 0, "memory_limit")),
+            terrain_error=_checked_error(terrain_error),
+            memory_limit=_checked_count(memory_limit, "memory_limit", "bytes", 2**63),
             backend=backend,
-            threads=int(_at_least(threads or 0, 0, "threads")),
-            rectangle=int(_at_least(tile or 0, 0, "tile")),
+            threads=_checked_count(threads, "threads", "threads", MOST_THREADS),
+            rectangle=_checked_count(tile, "tile", "pixels", LARGEST_SIDE),
         )
+        self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
-        self._layers: tuple[Layer, ...] = ()
+        self._prepared_layers: tuple[Layer, ...] = ()
+        self._updated_layers: tuple[Layer, ...] = ()
+
+    def has_options(self, given: Mapping[str, Any]) -> bool:
+        """Whether this renderer is what `given`, arguments other than size and antialias, asks for."""
+        return self._options == {**DEFAULT_OPTIONS, **given}
 
     def set_picture(self, size: tuple[int, int], antialias: str) -> None:
         """The size and anti-aliasing of the pictures from the next `update` on."""
-        width, height = _checked_size(size)
+        width, height = _checked_picture(size)
         self._core.set_picture(width, height, _checked_antialias(antialias))
         self.size = (width, height)
 
-    def preprocess(self, scene: Scene, progress: Callable[[str, float], bool | None] | None = None) -> None:
+    def preprocess(self, scene: Scene, progress: Progress | None = None) -> None:
         """Builds the index of a scene on all cores; does nothing where the scene is as it was last time.
 
-        progress: called with the stage's name and the fraction done, from the calling thread; returning False stops
-        the work with CancelledError.
+        progress: called with the stage's name and the fraction done, from the calling thread. Returning False
+            stops the work with CancelledError; an exception of its own stops it too and comes back.
+
+        Raises MemoryLimitError where the index does not fit. What was prepared before then stays.
         """
         state = (scene.terrain, scene.exaggeration, scene.relief, scene.layers)
         if self._prepared == state:
@@ -101,51 +116,69 @@ class Renderer:
                 raise stop.error from None
             raise
         self._prepared = state
-        self._layers = scene.layers
+        self._prepared_layers = scene.layers
 
     def update(self, camera: Camera) -> dict[str, int]:
-        """Makes ready to draw from a camera. Returns counters: `pieces` in the index and `bytes` of GL memory.
+        """Makes ready to draw from a camera.
 
-        Raises GraphicsError where there is no OpenGL, naming what was tried and what to install, and
-        MemoryLimitError where the picture or the scene does not fit.
+        Returns counters: `pieces` in the index and `bytes` of GL memory. Raises GraphicsError where there is
+        no OpenGL, naming what was tried and what to install, and MemoryLimitError where the picture or the
+        scene does not fit.
         """
+        width, height = self.size
+        if width * height > LARGE_PICTURE:
+            targets = SURFACE_BYTES * min(width, TARGET_SIDE) * min(height, TARGET_SIDE)
+            needed = IMAGE_BYTES * width * height + targets
+            check_memory(needed, f"A picture of {width} x {height} pixels", "draw", "Ask for a smaller size.")
         fitted = camera.for_size(self.size)
-        return self._core.update(
+        report = self._core.update(
             _core.Camera(
                 eye=fitted.eye,
                 target=fitted.target,
                 up=fitted.up,
-                fov=45.0 if fitted.is_orthographic else float(fitted.fov or 45.0),
-                view_height=float(fitted.view_height or 0.0) if fitted.is_orthographic else 0.0,
+                fov=45.0 if fitted.fov is None else fitted.fov,
+                view_height=fitted.view_height or 0.0,
             )
         )
+        self._updated_layers = self._prepared_layers
+        return report
 
     def render(self, background: Any = "sky") -> Frame:
         """The picture from the camera of the last `update`.
 
         background: "sky", a colour, or None for transparent (alpha 0) where there is no terrain.
         """
-        low, high = _background(background)
-        return Frame(self._core.render(low, high), self._layers)
+        low, high = drawn_background(background)
+        return Frame(self._core.render(low, high), self._updated_layers)
 
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""
         return self._core.time_floor()
 
 
+DEFAULT_OPTIONS = {
+    "terrain_error": 0.5,
+    "memory_limit": None,
+    "backend": "auto",
+    "threads": None,
+    "tile": None,
+}
+
+
 class _ExceptionKeeper:
     """A progress callback whose exception stops the work and is raised again afterwards."""
 
-    def __init__(self, progress: Callable[[str, float], bool | None]) -> None:
+    def __init__(self, progress: Progress) -> None:
         self._progress = progress
         self.error: BaseException | None = None
 
     def __call__(self, stage: str, fraction: float) -> bool:
         try:
-            return self._progress(stage, fraction) is not False
+            answer = self._progress(stage, fraction)
         except BaseException as error:
             self.error = error
             return False
+        return not (isinstance(answer, (bool, np.bool_)) and not answer)
 
 
 def _core_scene(scene: Scene) -> _core.Scene:
@@ -182,16 +215,16 @@ def _core_relief(scene: Scene) -> _core.Relief:
     relief.azimuth, relief.altitude = given.azimuth, given.altitude
     relief.strength, relief.on_layers = given.strength, given.on_layers
     if given.cmap is not None:
-        finite = scene.heights[np.isfinite(scene.heights)]
-        lowest = float(finite.min()) if given.vmin is None and finite.size else float(given.vmin or 0.0)
-        highest = float(finite.max()) if given.vmax is None and finite.size else float(given.vmax or 0.0)
+        lowest = float(np.nanmin(scene.heights)) if given.vmin is None else given.vmin
+        highest = float(np.nanmax(scene.heights)) if given.vmax is None else given.vmax
         ramp = colormap(given.cmap)(np.linspace(0.0, 1.0, 256))
         relief.ramp = np.rint(255 * ramp[:, :3]).astype(np.uint8).ravel().tolist()
-        relief.lowest, relief.highest = lowest, max(highest, lowest + 1e-6)
+        relief.lowest, relief.highest = lowest, max(highest, lowest + 1e-3)
     return relief
 
 
-def _background(background: Any) -> tuple[Rgba, Rgba]:
+def drawn_background(background: Any) -> tuple[Rgba, Rgba]:
+    """The colours at the horizon and 45 degrees above it. Raises StyleError."""
     if background is None:
         return (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
     if isinstance(background, str) and background == "sky":
@@ -200,26 +233,44 @@ def _background(background: Any) -> tuple[Rgba, Rgba]:
     return color, color
 
 
-def _checked_size(size: Sequence[int]) -> tuple[int, int]:
-    try:
-        width, height = (int(side) for side in size)
-        whole = (width, height) == tuple(size)
-    except (TypeError, ValueError):
-        whole = False
-    if not whole or width < 1 or height < 1:
-        raise InputError(f"size must be (width, height) in whole pixels, at least 1 each, but it is {size!r}.")
+def _checked_picture(size: tuple[int, int]) -> tuple[int, int]:
+    width, height = checked_size(size)
+    if max(width, height) > LARGEST_SIDE:
+        raise InputError(f"size must be at most {LARGEST_SIDE} pixels a side, but it is {size!r}.")
     return width, height
 
 
 def _checked_antialias(antialias: str) -> str:
     if antialias in PLANNED_ANTIALIAS:
-        raise UnsupportedError(f"antialias={antialias!r} is not drawn by this version; use 'coverage' or 'none'.")
+        raise UnsupportedError(
+            f"antialias={antialias!r} is not drawn by this version; use 'coverage' or 'none'."
+        )
     if antialias not in ANTIALIAS:
         raise InputError(f"There is no antialias={antialias!r}; choose 'coverage' or 'none'.")
     return antialias
 
 
-def _at_least(value: float, least: float, name: str) -> float:
-    if not np.isfinite(value) or value < least:
-        raise InputError(f"{name} must be a finite number, {least:g} or more, but it is {value!r}.")
-    return value
+def _checked_error(value: Any) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = np.nan
+    if not 0.0 <= number < np.inf:
+        raise InputError(f"terrain_error must be a number of pixels, zero or more, but it is {value!r}.")
+    return number
+
+
+def _checked_count(value: Any, name: str, unit: str, most: int) -> int:
+    """A whole number from 1 to `most`; 0 for None, as the core takes it."""
+    if value is None:
+        return 0
+    try:
+        number = int(value)
+        whole = number == value
+    except (TypeError, ValueError, OverflowError):
+        number, whole = 0, False
+    if not whole or not 1 <= number < most:
+        raise InputError(
+            f"{name} must be a whole number of {unit} above 0 and below {most}, or None, but it is {value!r}."
+        )
+    return number

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ._colors import colormap, parse_color
 from .camera import Camera
 from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, UnsupportedError, close_matches
-from .features import FeatureTable, read_features
+from .features import LARGEST_COORDINATE, FeatureTable, Kind, read_features
+from .terrain import Terrain
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -20,9 +22,11 @@ if TYPE_CHECKING:
     from ._sources import Attributes
     from .frame import Frame
     from .renderer import Renderer
-    from .terrain import Terrain
 
 Technique = Literal["auto", "static"]
+PLANNED_TECHNIQUES = ("dynamic",)
+# A line this many times as wide as the terrain is long has a width in the wrong unit.
+WIDEST_LINE = 1e4
 
 
 @dataclass(frozen=True)
@@ -30,10 +34,13 @@ class Relief:
     """How the bare terrain looks.
 
     color: its colour where there is no `cmap`.
-    cmap, vmin, vmax: colours by height in metres (after exaggeration); by default from the lowest to the highest.
+    cmap, vmin, vmax: colours by height in metres (after exaggeration), by default from the lowest height to
+        the highest.
     azimuth, altitude: where the light comes from, degrees clockwise from north and above the horizon.
     strength: of the hillshade, 0 for none. Level ground keeps its colour at any strength.
     on_layers: the share of the hillshade, 0 to 1, that the layers take on too. 0 shows their exact colours.
+
+    Raises InputError, and StyleError for unknown colours and colormaps.
     """
 
     color: Any = "#e9e5dc"
@@ -47,12 +54,22 @@ class Relief:
 
     def __post_init__(self) -> None:
         for name in ("azimuth", "altitude", "strength", "on_layers"):
-            if not np.isfinite(getattr(self, name)):
-                raise InputError(f"Relief {name} must be a finite number, but it is {getattr(self, name)!r}.")
+            object.__setattr__(self, name, _finite(getattr(self, name), f"Relief {name}"))
+        for name in ("vmin", "vmax"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _finite(getattr(self, name), f"Relief {name}"))
         if not 0.0 < self.altitude <= 90.0:
-            raise InputError(f"Relief altitude must lie above 0 and up to 90 degrees, but it is {self.altitude}.")
+            raise InputError(
+                f"Relief altitude must lie above 0 and up to 90 degrees, but it is {self.altitude}."
+            )
         if self.strength < 0.0 or not 0.0 <= self.on_layers <= 1.0:
             raise InputError("Relief strength must be 0 or more, and on_layers from 0 to 1.")
+        if self.vmin is not None and self.vmax is not None and self.vmin >= self.vmax:
+            raise InputError(f"Relief vmin must lie below vmax, but they are {self.vmin} and {self.vmax}.")
+        # As a plain tuple, so that two reliefs compare by value.
+        object.__setattr__(self, "color", parse_color(self.color))
+        if self.cmap is not None:
+            object.__setattr__(self, "cmap", colormap(self.cmap))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +91,30 @@ class Layer:
     draw_order: NDArray[np.int64] = field(repr=False)
     coloring: Coloring = field(repr=False)
 
+    def __post_init__(self) -> None:
+        for array in (self.colors, self.widths, self.draw_order):
+            array.flags.writeable = False
+
     @property
-    def kind(self) -> str:
-        """"polygons" or "lines"."""
+    def kind(self) -> Kind:
+        """What its features are: "polygons" or "lines"."""
         return self.features.kind
+
+
+@dataclass(frozen=True)
+class _Styling:
+    """The keywords that colour a layer, as `resolve_colors` takes them."""
+
+    column: Any
+    cmap: Any
+    color: Any
+    vmin: float | None
+    vmax: float | None
+    norm: Any
+    alpha: Any
+    categorical: bool | None
+    legend: bool
+    missing_kwds: Mapping[str, Any] | None
 
 
 class Scene:
@@ -85,14 +122,19 @@ class Scene:
 
     terrain: what everything lies on; its CRS is the scene's.
     exaggeration: heights are drawn this many times as high.
-    relief: how bare terrain looks.
+    relief: how bare terrain looks; it may be exchanged at any time.
+
+    Raises InputError for a terrain that cannot be drawn (no finite height, beyond 1e9 m).
     """
 
     def __init__(self, terrain: Terrain, exaggeration: float = 1.0, relief: Relief | None = None) -> None:
-        if not np.isfinite(exaggeration) or exaggeration < 0.0:
-            raise InputError(f"exaggeration must be a finite factor, zero or more, but it is {exaggeration!r}.")
-        self.terrain = terrain
-        self.exaggeration = float(exaggeration)
+        if not isinstance(terrain, Terrain):
+            raise InputError(
+                f"A scene needs a Terrain, not a {type(terrain).__name__}. Make one with Terrain.open,"
+                " Terrain.from_array or Terrain.flat."
+            )
+        self._terrain = terrain
+        self._exaggeration = _checked_exaggeration(terrain, exaggeration)
         self.relief = Relief() if relief is None else relief
         self._layers: list[Layer] = []
         self._heights: NDArray[np.float32] | None = None
@@ -103,13 +145,34 @@ class Scene:
         return f"Scene({self.terrain!r}, layers=[{names}])"
 
     @property
+    def terrain(self) -> Terrain:
+        """What everything lies on."""
+        return self._terrain
+
+    @property
+    def exaggeration(self) -> float:
+        """Heights are drawn this many times as high."""
+        return self._exaggeration
+
+    @property
+    def relief(self) -> Relief:
+        """How bare terrain looks."""
+        return self._relief
+
+    @relief.setter
+    def relief(self, relief: Relief) -> None:
+        if not isinstance(relief, Relief):
+            raise InputError(f"relief must be a Relief, not a {type(relief).__name__}.")
+        self._relief = relief
+
+    @property
     def layers(self) -> tuple[Layer, ...]:
         """The layers, bottom to top."""
         return tuple(self._layers)
 
     @property
     def heights(self) -> NDArray[np.float32]:
-        """The heights that are drawn, float32 (rows, columns) metres: exaggerated, then rounded; NaN: none."""
+        """What is drawn, float32 (rows, columns) metres: exaggerated, then rounded; NaN is a hole."""
         if self._heights is None:
             scaled = self.terrain.z.astype(np.float64) * self.exaggeration
             self._heights = scaled.astype(np.float32)
@@ -139,21 +202,16 @@ class Scene:
         """Adds a layer of polygons on top of the others.
 
         data: whatever `decalgl.features.read_features` reads; inside is even-odd over all rings of a feature.
+        name: of the layer, for messages and legends. layer: the one to read of a file with several.
+        crs: of data that carries none.
         column ... missing_kwds: colours, as in `GeoDataFrame.plot`.
-        order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top).
+        order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
+            missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
 
         Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """
-        name = self._layer_name(name, "polygons")
-        _require_technique(technique)
-        table, attributes = read_features(
-            data, "polygons", terrain_crs=self.terrain.crs, layer_name=name, crs=crs, layer=layer
-        )
-        coloring = resolve_colors(
-            attributes.count, attributes, color=color, column=column, cmap=cmap, vmin=vmin, vmax=vmax, norm=norm,
-            alpha=alpha, categorical=categorical, legend=legend, missing_kwds=missing_kwds, rows=table.rows,
-        )  # fmt: skip
-        return self._add(name, table, attributes, coloring, np.zeros(len(table)), order)
+        styling = _Styling(column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, missing_kwds)
+        return self._add("polygons", data, name, layer, crs, styling, order, technique, width=None)
 
     def add_lines(
         self,
@@ -185,28 +243,20 @@ class Scene:
         width_units: "m", metres on the map plane. "px", pixels on the screen, is not drawn by this version.
         corner, cap: "round".
         order: "feature" (later on top), "size" (longer on top), or a column or numbers (higher on top).
-        The other arguments, and the errors, are those of `add_polygons`; StyleError too for widths that are not
-        positive, UnsupportedError for what this version does not draw.
+        The other arguments, and the errors, are those of `add_polygons`; StyleError too for widths that are
+        not positive, UnsupportedError for what this version does not draw.
         """
-        name = self._layer_name(name, "lines")
-        _require_technique(technique)
-        _require_line_style(width_units, corner, cap)
-        table, attributes = read_features(
-            data, "lines", terrain_crs=self.terrain.crs, layer_name=name, crs=crs, layer=layer
-        )
-        coloring = resolve_colors(
-            attributes.count, attributes, color=color, column=column, cmap=cmap, vmin=vmin, vmax=vmax, norm=norm,
-            alpha=alpha, categorical=categorical, legend=legend, missing_kwds=missing_kwds, rows=table.rows,
-        )  # fmt: skip
-        return self._add(name, table, attributes, coloring, _widths(width, table, attributes, name), order)
+        _require_line_style(self._layer_name(name, "lines"), width_units, corner, cap)
+        styling = _Styling(column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, missing_kwds)
+        return self._add("lines", data, name, layer, crs, styling, order, technique, width=width)
 
     def home(self) -> Camera:
         """A camera that shows the whole terrain obliquely from the south."""
         x0, y0, x1, y1 = self.terrain.bounds
         finite = self.heights[np.isfinite(self.heights)]
         middle = float(np.median(finite)) if finite.size else 0.0
-        reach = max(x1 - x0, y1 - y0, 1.0)
-        return Camera.orbit(((x0 + x1) / 2, (y0 + y1) / 2, middle), 1.25 * reach, azimuth=180.0, elevation=40.0)
+        distance = 1.25 * max(x1 - x0, y1 - y0, 1.0)
+        return Camera.orbit(((x0 + x1) / 2, (y0 + y1) / 2, middle), distance, azimuth=180.0, elevation=40.0)
 
     def render(
         self,
@@ -220,67 +270,144 @@ class Scene:
         """A picture of the scene: `Renderer`'s three stages in one call.
 
         The renderer is kept, so a second picture only draws. `renderer`: other arguments of `Renderer`.
+        Raises what `Renderer` raises; the scene stays as it was, and so does an earlier frame.
         """
-        from .renderer import Renderer
+        from .renderer import Renderer, drawn_background
 
-        if self._renderer is None or self._renderer.keywords != renderer:
+        drawn_background(background)  # before minutes of preprocessing
+        if self._renderer is None or not self._renderer.has_options(renderer):
             self._renderer = Renderer(size=size, antialias=antialias, **renderer)
         self._renderer.set_picture(size, antialias)
         self._renderer.preprocess(self, progress=progress)
         self._renderer.update(camera)
         return self._renderer.render(background=background)
 
-    def _layer_name(self, name: str | None, kind: str) -> str:
+    def _layer_name(self, name: str | None, kind: Kind) -> str:
         return f"{kind} {len(self._layers)}" if name is None else str(name)
 
     def _add(
         self,
-        name: str,
-        table: FeatureTable,
-        attributes: Attributes,
-        coloring: Coloring,
-        widths: NDArray[np.float64],
+        kind: Kind,
+        data: Any,
+        name: str | None,
+        file_layer: str | int | None,
+        crs: Any,
+        styling: _Styling,
         order: Any,
+        technique: str,
+        width: Any,
     ) -> Layer:
+        name = self._layer_name(name, kind)
+        _require_technique(name, technique)
+        table, attributes = read_features(
+            data, kind, terrain_crs=self.terrain.crs, layer_name=name, crs=crs, layer=file_layer
+        )
+        try:
+            coloring = resolve_colors(attributes.count, attributes, rows=table.rows, **vars(styling))
+        except StyleError as error:
+            if repr(name) in str(error):
+                raise
+            raise StyleError(f"Layer {name!r}: {error}") from error
+        widths = np.zeros(len(table)) if kind == "polygons" else self._widths(width, table, attributes)
         draw_order = _draw_order(order, table, attributes)
         layer = Layer(name, len(self._layers), table, coloring.colors, widths, draw_order, coloring)
         self._layers.append(layer)
         return layer
 
+    def _widths(self, width: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.float64]:
+        widths = attributes.numbers(width, "width")[table.rows]
+        x0, y0, x1, y1 = self.terrain.bounds
+        widest = WIDEST_LINE * (max(x1 - x0, y1 - y0) or 1.0)
+        wrong = np.flatnonzero(~((widths > 0.0) & (widths <= widest)))
+        if wrong.size:
+            found = widths[wrong[0]]
+            problem = (
+                f"is wider than {WIDEST_LINE:g} times the terrain"
+                if found > 0
+                else "is not a positive length"
+            )
+            raise StyleError(
+                f"Layer {attributes.layer_name!r}, row {table.rows[wrong[0]]}: width {found:g} {problem}."
+                " Give every line a width above 0, in metres."
+            )
+        return widths
 
-def _require_technique(technique: str) -> None:
-    if technique not in ("auto", "static"):
-        raise UnsupportedError(f"technique={technique!r} is not drawn by this version; use 'auto' or 'static'.")
+
+def _finite(value: Any, what: str) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{what} must be a number, but it is {value!r}.") from error
+    if not np.isfinite(number):
+        raise InputError(f"{what} must be a finite number, but it is {number}.")
+    return number
 
 
-def _require_line_style(width_units: str, corner: str, cap: str) -> None:
+def _checked_exaggeration(terrain: Terrain, exaggeration: Any) -> float:
+    """The factor, after a look at whether the terrain can be drawn with it."""
+    factor = _finite(exaggeration, "exaggeration")
+    if factor < 0.0:
+        raise InputError(f"exaggeration must be zero or more, but it is {factor}.")
+    if max(map(abs, terrain.bounds)) > LARGEST_COORDINATE:
+        raise InputError(
+            f"The terrain's bounds {terrain.bounds} reach farther than {LARGEST_COORDINATE:g} m from the"
+            " origin. Check its transform and its CRS."
+        )
+    lowest, highest = np.fmin.reduce(terrain.z, axis=None), np.fmax.reduce(terrain.z, axis=None)
+    if np.isnan(lowest):
+        raise InputError(
+            "The terrain has no finite height, so there is nothing to draw. Check its nodata value."
+        )
+    if max(abs(float(lowest)), abs(float(highest))) * factor > LARGEST_COORDINATE:
+        raise InputError(
+            f"The terrain's heights, from {lowest:g} to {highest:g} m, drawn {factor:g} times as high, reach"
+            f" beyond {LARGEST_COORDINATE:g} m. Name the value that marks holes with nodata=, or lower the"
+            " exaggeration."
+        )
+    return factor
+
+
+def _require_technique(layer_name: str, technique: str) -> None:
+    if technique in ("auto", "static"):
+        return
+    if technique in PLANNED_TECHNIQUES:
+        raise UnsupportedError(
+            f"Layer {layer_name!r}: technique={technique!r} is not drawn by this version. Use 'auto' or"
+            " 'static'."
+        )
+    hint = close_matches(technique, ("auto", "static"))
+    raise StyleError(
+        f"Layer {layer_name!r}: there is no technique={technique!r}.{hint} Use 'auto' or 'static'."
+    )
+
+
+def _require_line_style(layer_name: str, width_units: str, corner: str, cap: str) -> None:
     if width_units == "px":
         raise UnsupportedError(
-            "Widths in pixels are not drawn by this version. Give the width on the ground: width=..., width_units='m'."
+            f"Layer {layer_name!r}: widths in pixels (width_units='px', the default) are not drawn by this"
+            " version. Give the width on the ground in metres, such as width=5, width_units='m'."
         )
     if width_units != "m":
-        raise StyleError(f"width_units must be 'm' or 'px', but it is {width_units!r}.")
-    for name, value, known in (("corner", corner, ("round", "miter", "bevel")), ("cap", cap, ("round", "butt", "square"))):
+        raise StyleError(f"Layer {layer_name!r}: width_units must be 'm' or 'px', but it is {width_units!r}.")
+    corners, caps = ("round", "miter", "bevel"), ("round", "butt", "square")
+    for keyword, value, known in (("corner", corner, corners), ("cap", cap, caps)):
         if value not in known:
-            raise StyleError(f"There is no {name}={value!r}.{close_matches(value, known)} Known: {', '.join(known)}.")
+            raise StyleError(
+                f"Layer {layer_name!r}: there is no {keyword}={value!r}.{close_matches(value, known)} Known"
+                f" are {', '.join(known)}."
+            )
         if value != "round":
-            raise UnsupportedError(f"{name}={value!r} is not drawn by this version; use 'round'.")
-
-
-def _widths(width: Any, table: FeatureTable, attributes: Attributes, layer_name: str) -> NDArray[np.float64]:
-    widths = attributes.numbers(width, "width")[table.rows]
-    wrong = np.flatnonzero(~(np.isfinite(widths) & (widths > 0.0)))
-    if wrong.size:
-        raise StyleError(
-            f"Layer {layer_name!r}, row {table.rows[wrong[0]]}: width {widths[wrong[0]]:g} is not a positive length. "
-            "Give every line a width above 0 metres."
-        )
-    return widths
+            raise UnsupportedError(
+                f"Layer {layer_name!r}: {keyword}={value!r} is not drawn by this version. Use 'round'."
+            )
 
 
 def _draw_order(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
     if isinstance(order, str) and order == "feature":
         return np.arange(len(table), dtype=np.int64)
-    by_size = isinstance(order, str) and order == "size" and "size" not in attributes.names
-    keys = table.sizes() if by_size else attributes.numbers(order, "order")[table.rows]
+    if isinstance(order, str) and order == "size":
+        keys = table.sizes()
+    else:
+        keys = attributes.numbers(order, "order")[table.rows]
+        keys[np.isnan(keys)] = -np.inf
     return np.argsort(keys, kind="stable").astype(np.int64)

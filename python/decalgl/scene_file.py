@@ -18,7 +18,6 @@ for its x and y. Unknown keys, tables and types are errors: a misspelt key never
 
 from __future__ import annotations
 
-import os
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,6 +33,7 @@ else:
     import tomli as tomllib
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Mapping
 
     from .camera import Camera
@@ -167,15 +167,8 @@ def parse_scene(document: Mapping[str, Any], file: Path) -> SceneDescription:
 
 
 def data_path(text: str, folder: Path) -> str:
-    """A path in a scene file as GDAL takes it: relative to `folder`, .gz unpacked while it is read."""
-    if text.startswith("/vsi") or "://" in text:
-        return text
-    path = folder / Path(text).expanduser()
-    if path.suffix != ".gz" or not path.is_file():
-        return str(path)
-    # Or GDAL leaves a file beside the data that says how large it is unpacked.
-    os.environ.setdefault("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO")
-    return f"/vsigzip/{path.resolve()}"
+    """A path of a scene file, relative to `folder`; what GDAL resolves by itself stays as it is."""
+    return text if text.startswith("/vsi") or "://" in text else str(folder / Path(text).expanduser())
 
 
 def make_camera(view: ViewDescription, terrain: Terrain, name: str) -> Camera:

@@ -254,6 +254,7 @@ TEST_CASE("the compiler's messages name the file and line of the mistake") {
         Catch::Contains("does not link"));
     CHECK_THAT(message_of([] { Program::create("no such program"); }, ErrorKind::graphics),
                Catch::Contains("no such program"));
+    CHECK_NOTHROW(check_errors("after the mistakes were told"));
 }
 
 TEST_CASE("a profiling log holds each pass, another log none") {

@@ -19,9 +19,6 @@ import decalgl
 from decalgl import _drawing, cli
 from decalgl.errors import CancelledError, InputError
 
-# rasterio still multiplies transforms in a way that the newest affine warns of.
-pytestmark = pytest.mark.filterwarnings("ignore:Use `@` matmul:PendingDeprecationWarning")
-
 HONOLULU = Path(__file__).resolve().parents[2] / "examples" / "data" / "honolulu"
 SCENE = """
 [terrain]

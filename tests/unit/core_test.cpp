@@ -124,6 +124,21 @@ TEST_CASE("parallel_for reports on the calling thread, which may stop it") {
           }) == ErrorKind::cancelled);
 }
 
+TEST_CASE("parallel_for reports the end even where the helpers do all the work") {
+    std::atomic<int> done{0};
+    std::vector<double> shares;
+    parallel_for(
+        8, 1, 2, [&](std::size_t, std::size_t) { ++done; },
+        [&](double share) {
+            shares.push_back(share);
+            while (done < 8) {  // holds the caller until the helper has taken every block
+                std::this_thread::yield();
+            }
+        });
+    CHECK(shares.back() == 1.0);
+    CHECK(std::count(shares.begin(), shares.end(), 1.0) == 1);
+}
+
 TEST_CASE("DECALGL_THREADS overrides the number of cores") {
     ::setenv("DECALGL_THREADS", "3", 1);
     CHECK(hardware_threads() == 3);

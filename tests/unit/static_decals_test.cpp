@@ -53,15 +53,16 @@ void require_well_formed(const PreparedDecals& decals) {
         const uint32_t end = decals.cell_starts[cell + 1];
         int64_t previous_slot = -1;
         while (at < end) {
-            const CellTexel header = decals.texels[at];
-            REQUIRE(int64_t{header.x} > previous_slot);
-            REQUIRE(header.x < decals.slots.size());
-            const uint32_t count = header.y & GROUP_COUNT_MASK;
-            REQUIRE((count > 0 || (header.y & GROUP_COVERS) != 0));
-            previous_slot = header.x;
-            at += 1 + count;
+            const CellTexel header = decals.texels[at++];
+            REQUIRE(is_header(header));
+            REQUIRE(int64_t{header.y} > previous_slot);
+            REQUIRE(header.y < decals.slots.size());
+            previous_slot = header.y;
+            uint32_t pieces = 0;
+            for (; at < end && !is_header(decals.texels[at]); ++at) ++pieces;
+            REQUIRE((pieces > 0 || (header.x & GROUP_COVERS) != 0));
         }
-        REQUIRE(at == end);
+        REQUIRE(decals.cell_starts[cell] <= end);
     }
 }
 
@@ -71,9 +72,11 @@ bool inside(const CellGrid& grid, const Ring& ring, double x, double y) {
     const size_t count = ring.size() / 2;
     for (size_t i = 0; i < count; ++i) {
         const size_t j = (i + 1) % count;
-        const auto snap_x = [&](size_t k) { return grid.left() + static_cast<double>(grid.lattice_x(ring[2 * k])) * grid.quantum; };
-        const auto snap_y = [&](size_t k) { return grid.bottom() + static_cast<double>(grid.lattice_y(ring[2 * k + 1])) * grid.quantum; };
-        const double ax = snap_x(i), ay = snap_y(i), bx = snap_x(j), by = snap_y(j);
+        const auto snapped = [&](size_t k) { return Lattice(grid).nearest(ring[2 * k], ring[2 * k + 1]); };
+        const double ax = grid.left() + static_cast<double>(snapped(i).x) * grid.quantum;
+        const double ay = grid.bottom() + static_cast<double>(snapped(i).y) * grid.quantum;
+        const double bx = grid.left() + static_cast<double>(snapped(j).x) * grid.quantum;
+        const double by = grid.bottom() + static_cast<double>(snapped(j).y) * grid.quantum;
         if ((ay <= y) != (by <= y) && ax + (y - ay) / (by - ay) * (bx - ax) <= x) result = !result;
     }
     return result;

@@ -1,12 +1,10 @@
 // The picture: the overlay over the shaded terrain, or the sky. "Over" on sRGB values, as map tools do.
 //
 // OVERLAY   a layer was drawn
-#include "shared/position.glsl"
 #include "shared/ray.glsl"
 
 layout(location = 0) out vec4 color;
 
-uniform usampler2D position_texture;
 uniform sampler2D surface_texture;
 uniform sampler2D base_texture;
 #ifdef OVERLAY
@@ -25,11 +23,12 @@ vec4 sky() {
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    if (is_sky(unpack_position(texelFetch(position_texture, pixel, 0)))) {
+    vec4 surface = texelFetch(surface_texture, pixel, 0);
+    if (isinf(surface.z)) {
         color = sky();
         return;
     }
-    float shade = texelFetch(surface_texture, pixel, 0).w;
+    float shade = surface.w;
     color = vec4(clamp(texelFetch(base_texture, pixel, 0).rgb * shade, 0.0, 1.0), 1.0);
 #ifdef OVERLAY
     vec4 overlay = texelFetch(overlay_texture, pixel, 0);

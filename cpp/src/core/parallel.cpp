@@ -36,8 +36,12 @@ public:
 
     void work_and_report(const ShareFn& report) noexcept {
         do {
+            const std::size_t begun = next_.load();
+            if (begun >= blocks_ || failed_.load()) {
+                return;
+            }
             try {
-                report(std::min(1.0, static_cast<double>(next_.load()) / static_cast<double>(blocks_)));
+                report(static_cast<double>(begun) / static_cast<double>(blocks_));
             } catch (...) {
                 fail(std::current_exception());
             }
@@ -123,6 +127,9 @@ void parallel_for(std::size_t count, std::size_t grain, unsigned threads, const 
         thread.join();
     }
     blocks.rethrow();
+    if (report) {
+        report(1.0);  // Here, since the helpers may have taken every block after the first report.
+    }
 }
 
 }  // namespace decalgl

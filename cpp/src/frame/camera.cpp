@@ -11,8 +11,11 @@ namespace {
 
 constexpr double radians = 3.14159265358979323846 / 180.0;
 
-bool is_finite(glm::dvec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+// Beyond, the square of a distance times a size would leave the numbers behind.
+constexpr double farthest = 1e12;
+
+bool is_near(glm::dvec3 v) {
+    return std::abs(v.x) <= farthest && std::abs(v.y) <= farthest && std::abs(v.z) <= farthest;
 }
 
 }  // namespace
@@ -41,14 +44,14 @@ Camera Camera::top_down(const Bounds& bounds, double eye_height, double aspect) 
 }
 
 CameraBasis basis_of(const Camera& camera) {
-    if (!is_finite(camera.eye) || !is_finite(camera.target) || !is_finite(camera.up))
-        throw Error(ErrorKind::input, "camera: eye, target and up must be finite");
+    if (!is_near(camera.eye) || !is_near(camera.target) || !is_near(camera.up))
+        throw Error(ErrorKind::input, "camera: eye, target and up must be finite and at most 1e12 m away");
     if (!camera.orthographic() && !(camera.fov > 0.0 && camera.fov < 180.0))
         throw Error(ErrorKind::input, "camera: fov must lie between 0 and 180 degrees");
-    if (!std::isfinite(camera.view_height) || camera.view_height < 0.0)
+    if (!(camera.view_height >= 0.0 && camera.view_height <= farthest))
         throw Error(ErrorKind::input, "camera: view_height must be a positive length in metres");
     const glm::dvec3 towards = camera.target - camera.eye;
-    if (glm::length(towards) == 0.0)
+    if (!(glm::length(towards) > 0.0))
         throw Error(ErrorKind::input, "camera: eye and target are the same point; move one of them");
     const glm::dvec3 forward = glm::normalize(towards);
     glm::dvec3 right = glm::cross(forward, camera.up);

@@ -18,7 +18,7 @@ class GBuffer {
     int height() const { return position.height(); }
 
     gl::Texture2D position;  // block x, y; offset x, y as bits
-    gl::Texture2D surface;   // gradient x, y; distance along the ray; hillshade
+    gl::Texture2D surface;   // gradient x, y; distance along the ray, infinite for sky; hillshade
     gl::Texture2D base;      // colour of the bare terrain
     gl::Texture2D depth;     // reversed
     gl::Framebuffer framebuffer;

@@ -132,8 +132,11 @@ void Pipeline::make_targets() {
 // Runs `body` on each rectangle with its G-buffer drawn; one that is still there is not drawn again.
 void Pipeline::for_each_rectangle(const RectangleFn& body) {
     for (const Rectangle& rectangle : rectangles_) {
-        if (drawn_in_gbuffer_ != &rectangle) draw_gbuffer(rectangle);
-        drawn_in_gbuffer_ = &rectangle;
+        if (drawn_in_gbuffer_ != &rectangle) {
+            drawn_in_gbuffer_ = nullptr;
+            draw_gbuffer(rectangle);
+            drawn_in_gbuffer_ = &rectangle;
+        }
         body(rectangle);
     }
 }
@@ -164,8 +167,6 @@ void Pipeline::compose() {
     gl::Program& program = programs_.get("compose", techniques_.empty() ? gl::Flags{} : gl::Flags{"OVERLAY"});
     picture_framebuffer_.bind();
     program.use();
-    program.set("position_texture", 0);
-    gbuffer_.position.bind(0);
     program.set("surface_texture", 1);
     gbuffer_.surface.bind(1);
     program.set("base_texture", 2);
@@ -183,7 +184,9 @@ void Pipeline::compose() {
 }
 
 std::vector<uint8_t> Pipeline::draw_image() {
-    std::vector<uint8_t> image(4 * static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height));
+    const size_t bytes = 4 * static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
+    const MemoryCharge charge(memory_, "frame: image", bytes);
+    std::vector<uint8_t> image(bytes);
     for_each_rectangle([&](const Rectangle& rectangle) {
         draw_overlay();
         compose();

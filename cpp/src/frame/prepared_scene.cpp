@@ -1,14 +1,46 @@
 #include "frame/prepared_scene.h"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
+
+#include "decalgl/core/error.h"
 
 namespace decalgl {
 namespace {
+
+// Positions are held as blocks of at most 32 m counted in 32 bits; heights below this are taken for holes.
+constexpr double farthest = 1e10;
+constexpr float highest = 1e30F;
+constexpr size_t longest_ramp = 4096;
+
+void validate(const Heightfield& terrain) {
+    const Bounds bounds = terrain.bounds();
+    for (const double value : {bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y}) {
+        if (!(std::abs(value) <= farthest))
+            throw Error(ErrorKind::input, "terrain: it reaches farther than 1e10 m from the origin; move it closer");
+    }
+    const auto is_too_high = [](float height) { return std::abs(height) > highest; };
+    if (std::any_of(terrain.heights().begin(), terrain.heights().end(), is_too_high))
+        throw Error(ErrorKind::input, "terrain: a height is beyond 1e30 m; mark missing samples with NaN");
+}
+
+void validate(const Relief& relief) {
+    const double values[] = {relief.lowest,   relief.highest,  relief.azimuth,
+                             relief.altitude, relief.strength, relief.on_layers};
+    if (!std::all_of(std::begin(values), std::end(values), [](double value) { return std::isfinite(value); }))
+        throw Error(ErrorKind::input, "relief: all its numbers must be finite");
+    if (relief.ramp.size() % 3 != 0 || relief.ramp.size() > 3 * longest_ramp)
+        throw Error(ErrorKind::input, "relief: the ramp must be red, green and blue of at most " +
+                                          std::to_string(longest_ramp) + " colours");
+}
 
 void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, PreparedScene& prepared) {
     const Stopwatch watch;
     progress.report(0.0);
     prepared.terrain = scene.exaggeration == 1.0 ? scene.terrain : scene.terrain.exaggerated(scene.exaggeration);
+    validate(prepared.terrain);
     prepared.positions = PositionGrid::around(prepared.terrain.bounds());
     prepared.relief = scene.relief;
     prepared.tiles = TerrainTiles::over(prepared.terrain, threads);
@@ -33,6 +65,8 @@ void prepare_layers(const Scene& scene, unsigned threads, const MemoryAccount& m
     pass.prepared = make_technique(pass.technique)->preprocess(input, progress);
     prepared.passes.push_back(std::move(pass));
     prepared.timings.add("static", watch.milliseconds());
+    // Layers without anything to draw cost no pass.
+    if (prepared.passes.back().prepared->counts().features == 0) prepared.passes.pop_back();
 }
 
 }  // namespace
@@ -41,6 +75,7 @@ std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned 
                                                    const ProgressFn& progress) {
     const Stopwatch watch;
     auto prepared = std::make_shared<PreparedScene>();
+    validate(scene.relief);
     for (const Layer& layer : scene.layers) {
         validate(layer);
         prepared->features.push_back(layer.features);

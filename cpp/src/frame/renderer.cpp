@@ -1,6 +1,7 @@
 #include "decalgl/frame/renderer.h"
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 #include "decalgl/core/error.h"
@@ -26,11 +27,17 @@ void require_options(const RendererOptions& options) {
 struct RendererState {
     RendererOptions options;
     MemoryAccount memory;
+    std::mutex scene_mutex;  // preprocess may run on another thread
     std::shared_ptr<const PreparedScene> scene;
     std::unique_ptr<Pipeline> pipeline;  // made by the first update
     PictureRequest request;
     std::shared_ptr<const PreparedScene> updated_scene;  // what the last successful update was given
     double update_ms = 0.0;
+
+    std::shared_ptr<const PreparedScene> latest_scene() {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
+        return scene;
+    }
 
     // Makes the pipeline draw a request, whatever it drew last.
     Pipeline& pipeline_for(const std::shared_ptr<const PreparedScene>& wanted, const PictureRequest& wanted_request) {
@@ -72,20 +79,26 @@ void Renderer::set_picture(int width, int height, Antialias antialias) {
 }
 
 void Renderer::preprocess(const Scene& scene, const ProgressFn& progress) {
-    state_->scene = prepare_scene(scene, state_->options.threads, state_->memory, progress);
+    auto prepared = prepare_scene(scene, state_->options.threads, state_->memory, progress);
+    const std::lock_guard<std::mutex> lock(state_->scene_mutex);
+    state_->scene = std::move(prepared);
 }
 
 UpdateReport Renderer::update(const Camera& camera) {
     RendererState& state = *state_;
-    if (!state.scene) throw Error(ErrorKind::input, "nothing to draw yet; call preprocess(scene) first");
+    const std::shared_ptr<const PreparedScene> scene = state.latest_scene();
+    if (!scene) throw Error(ErrorKind::input, "nothing to draw yet; call preprocess(scene) first");
     const Stopwatch watch;
-    if (!state.pipeline) state.pipeline = std::make_unique<Pipeline>(state.options, state.memory);
+    if (!state.pipeline) {
+        state.pipeline = std::make_unique<Pipeline>(state.options, state.memory);
+        state.pipeline->context().release();  // between calls, any thread may take it
+    }
     const gl::CurrentScope current(state.pipeline->context());
     const RendererOptions& options = state.options;
     const PictureRequest request{camera, options.width, options.height, options.antialias, options.terrain_error, {}};
-    const UpdateReport report = state.pipeline->update(state.scene, request);
+    const UpdateReport report = state.pipeline->update(scene, request);
     state.request = request;
-    state.updated_scene = state.scene;
+    state.updated_scene = scene;
     state.update_ms = watch.milliseconds();
     return report;
 }

@@ -7,6 +7,7 @@ namespace decalgl {
 FrameStats collect_stats(Pipeline& pipeline, const PreparedScene& scene, const MemoryAccount& memory) {
     FrameStats stats;
     stats.passes = pipeline.timings().passes();
+    stats.preprocess = scene.timings.passes();
     stats.preprocess_ms = scene.milliseconds;
     stats.readback_ms = pipeline.timings().total("readback");
     stats.bytes = memory.entries();

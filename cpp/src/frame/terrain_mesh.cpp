@@ -4,6 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "decalgl/core/error.h"
+#include "gl/context.h"
+
 namespace decalgl {
 namespace {
 
@@ -39,6 +42,11 @@ TerrainMesh::TerrainMesh(const PreparedScene& scene, const MemoryAccount& memory
     : relief_(scene.relief), has_holes_(scene.tiles.has_holes) {
     const int columns = scene.terrain.columns();
     const int rows = scene.terrain.rows();
+    const int limit = gl::Context::require_current().info().max_texture_size;
+    if (columns > limit || rows > limit)
+        throw Error(ErrorKind::memory, "the terrain has " + std::to_string(rows) + " x " + std::to_string(columns) +
+                                           " samples, but this driver holds at most " + std::to_string(limit) +
+                                           " a side; open a part of it, or resample it");
     std::vector<float> heights(scene.terrain.heights());
     lowest_ = 0.0F;
     for (float& height : heights) {

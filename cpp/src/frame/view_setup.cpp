@@ -143,6 +143,25 @@ int choose_level(const TerrainTile& tile, double pixels_per_metre, double terrai
     return level;
 }
 
+// Lowers levels until neighbours differ by one at most. At a seam the finer tile's vertices move along it by as much as
+// the levels differ; over a longer way the strip beside the seam would be off by far more than either tile.
+void limit_steps(const TerrainTiles& tiles, std::vector<int>& levels) {
+    const int32_t columns = tiles.columns;
+    const auto lower = [&](int32_t tile, int32_t neighbour) {
+        int& level = levels[static_cast<size_t>(tile)];
+        level = std::min(level, levels[static_cast<size_t>(neighbour)] + 1);
+    };
+    const auto count = static_cast<int32_t>(levels.size());
+    for (int32_t i = 0; i < count; ++i) {
+        if (i % columns > 0) lower(i, i - 1);
+        if (i >= columns) lower(i, i - columns);
+    }
+    for (int32_t i = count - 1; i >= 0; --i) {
+        if (i % columns < columns - 1) lower(i, i + 1);
+        if (i < count - columns) lower(i, i + columns);
+    }
+}
+
 }  // namespace
 
 ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,
@@ -190,6 +209,7 @@ std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfie
         levels[i] = choose_level(tile, height / std::max(metres_per_picture, 1e-9), terrain_error);
         seen[i] = frustum.sees(box);
     }
+    limit_steps(tiles, levels);
     const auto level_at = [&](int32_t column, int32_t row) {
         const bool inside = column >= 0 && column < tiles.columns && row >= 0 && row < tiles.rows;
         return inside ? levels[static_cast<size_t>(row * tiles.columns + column)] : 0;

@@ -56,10 +56,13 @@ bool debug_from_environment() {
     return value != nullptr && std::strcmp(value, "0") != 0 && *value != '\0';
 }
 
-/// Called by the driver: may only take notes, since exceptions must not cross its C frames.
-void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei,
+/// Called by the driver: may only take notes, since exceptions must not cross its C frames. What the shader
+/// compiler says is left out: it reaches the caller through the compile and link status, and a note of it
+/// would be blamed on whatever is checked next.
+void GLAD_API_PTR on_debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei,
                                    const GLchar* message, const void* user) {
-    if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH) {
+    const bool is_error = type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH;
+    if (!is_error || source == GL_DEBUG_SOURCE_SHADER_COMPILER) {
         return;
     }
     auto* state = const_cast<ContextState*>(static_cast<const ContextState*>(user));

@@ -15,7 +15,8 @@ namespace decalgl {
 /// Called with a block [begin, end); blocks run in any order and on any thread.
 using RangeFn = std::function<void(std::size_t begin, std::size_t end)>;
 
-/// Called on the calling thread between its blocks with the share of blocks begun, 0 to 1; may throw to stop.
+/// Called on the calling thread between its blocks with the share of blocks begun, and with 1 once, when all
+/// of them have ended; may throw to stop.
 using ShareFn = std::function<void(double share)>;
 
 /// The cores this process may run on (its affinity mask), or DECALGL_THREADS where that is set; at least 1.

@@ -15,6 +15,7 @@ struct FrameState;
 
 struct FrameStats {
     std::vector<TimedPass> passes;  // of the last picture, in order
+    std::vector<TimedPass> preprocess;  // its parts
     double preprocess_ms = 0.0;
     double update_ms = 0.0;
     double render_ms = 0.0;

@@ -74,14 +74,8 @@ uint crossing_mask(vec4 piece, vec2 point, mat2 foot) {
 
 uint piece_mask(Group group, vec4 piece, vec2 local, mat2 foot) {
     vec2 point = local * group.scale + float(COORDINATE_BIAS);
-#if defined(LINES) && defined(RINGS)
     if (group.is_line) return stroke_mask(piece, point, foot * group.scale, group.half_width2);
     return crossing_mask(piece, point, foot);
-#elif defined(LINES)
-    return stroke_mask(piece, point, foot * group.scale, group.half_width2);
-#else
-    return crossing_mask(piece, point, foot);
-#endif
 }
 
 // Front-to-back composition of masks. `open`: samples that still see something behind what was added.
@@ -118,22 +112,19 @@ vec4 composite_cell(ivec2 cell, vec2 local, mat2 foot, uint inside) {
     for (int i = 0; i < sample_count; ++i) samples.clear[i] = 1.0;
 #endif
     Group group;
-    group.count = 0u;
     uint covered = 0u;
     vec4 sum = vec4(0.0);
-    for (uint at = range.x; at < range.y;) {
-        uvec2 texel = texelFetch(cell_texels, int(at++)).rg;
-        if (group.count == 0u) {
+    // One step past the last texel, to end the last group.
+    for (uint at = range.x; at <= range.y && range.x < range.y; ++at) {
+        uvec2 texel = at < range.y ? texelFetch(cell_texels, int(at)).rg : uvec2(HEADER_MARK, 0u);
+        if (is_header(texel)) {
+            if (covered != 0u) sum += add_layer(samples, covered, color_of(group.slot));
             group = read_group(texel);
-            covered = group.covers ? all_samples : 0u;
+            covered = covers_corner(texel) ? all_samples : 0u;
+            if (samples.open == 0u) at = range.y;
         } else {
             uint mask = piece_mask(group, read_piece(texel), local, foot);
             covered = group.is_line ? covered | mask : covered ^ mask;
-            --group.count;
-        }
-        if (group.count == 0u) {
-            sum += add_layer(samples, covered, group.color);
-            if (samples.open == 0u) at = range.y;
         }
     }
     return sum;

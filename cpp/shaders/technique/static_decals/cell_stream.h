@@ -1,11 +1,14 @@
 // The cell stream: what the cells of a static decal grid hold. Read by C++ and GLSL alike.
 //
 // A cell is a run of 8-byte texels. Groups follow each other from the topmost feature to the lowest, each a
-// header and `count` pieces:
+// header and its pieces:
 //
-//     header   x: slot of the feature in draw order, topmost first
-//              y: count (24 bits) | scale (5 bits) | covers (1 bit) | line (1 bit)
-//     piece    x: x0 | y0 << 16      y: x1 | y1 << 16
+//     header   x: HEADER_MARK | scale << 16 | covers << 21 | line << 22
+//              y: slot of the feature in draw order, topmost first
+//     piece    x: x0 | y0 << 16
+//              y: x1 | y1 << 16
+//
+// A piece's x0 is never HEADER_MARK, so each texel says what it is.
 //
 // Coordinates are in lattice quanta from the cell's lower left corner, divided by 2^scale, plus
 // COORDINATE_BIAS. A cell is CELL_QUANTA wide. Ring pieces are clipped to the cell and have scale 0; line
@@ -21,11 +24,11 @@
 #define COORDINATE_BIAS 16384
 #define COORDINATE_MAX 65534
 
-#define GROUP_COUNT_MASK 0x00FFFFFFu
-#define GROUP_SCALE_SHIFT 24
+#define HEADER_MARK 0xFFFFu
+#define GROUP_SCALE_SHIFT 16
 #define GROUP_SCALE_MASK 0x1Fu
-#define GROUP_COVERS 0x20000000u
-#define GROUP_LINE 0x40000000u
+#define GROUP_COVERS 0x00200000u
+#define GROUP_LINE 0x00400000u
 
 // Cells are numbered bucket by bucket, so that what lies together on the map lies together in memory.
 #define BUCKET_BITS 5

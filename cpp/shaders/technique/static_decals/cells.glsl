@@ -11,6 +11,10 @@ uniform float quanta_per_metre;
 uniform ivec2 first_cell;             // counted from the position grid's origin
 uniform ivec2 grid_size;
 uniform int bucket_columns;
+#ifdef ONE_WIDTH
+uniform float line_scale;        // units per quantum
+uniform float line_half_width2;  // squared, in units
+#endif
 
 struct CellPosition {
     ivec2 cell;
@@ -41,24 +45,51 @@ uvec2 cell_range(ivec2 cell) {
 
 struct Group {
     uint slot;
-    uint count;
-    bool covers;
     bool is_line;
     float scale;        // units per quantum
     float half_width2;  // squared, in units
-    vec4 color;         // straight alpha
 };
 
+bool is_header(uvec2 texel) {
+    return (texel.x & 0xFFFFu) == HEADER_MARK;
+}
+
+bool covers_corner(uvec2 header) {
+    return (header.x & GROUP_COVERS) != 0u;
+}
+
 Group read_group(uvec2 header) {
-    uvec2 style = texelFetch(decal_styles, int(header.x)).rg;
-    float scale = uintBitsToFloat((127u - (header.y >> GROUP_SCALE_SHIFT & GROUP_SCALE_MASK)) << 23);
-    float half_width = uintBitsToFloat(style.y) * scale;
-    return Group(header.x, header.y & GROUP_COUNT_MASK, (header.y & GROUP_COVERS) != 0u,
-                 (header.y & GROUP_LINE) != 0u, scale, half_width * half_width, unpackUnorm4x8(style.x));
+    Group group;
+    group.slot = header.y;
+#if defined(LINES) && defined(RINGS)
+    group.is_line = (header.x & GROUP_LINE) != 0u;
+#elif defined(LINES)
+    group.is_line = true;
+#else
+    group.is_line = false;
+#endif
+#if defined(LINES) && defined(ONE_WIDTH)
+    group.scale = group.is_line ? line_scale : 1.0;
+    group.half_width2 = line_half_width2;
+#elif defined(LINES)
+    group.scale = uintBitsToFloat((127u - (header.x >> GROUP_SCALE_SHIFT & GROUP_SCALE_MASK)) << 23);
+    float half_width = uintBitsToFloat(texelFetch(decal_styles, int(header.y)).g) * group.scale;
+    group.half_width2 = half_width * half_width;
+#else
+    group.scale = 1.0;
+    group.half_width2 = 0.0;
+#endif
+    return group;
+}
+
+// Straight alpha.
+vec4 color_of(uint slot) {
+    return unpackUnorm4x8(texelFetch(decal_styles, int(slot)).r);
 }
 
 vec4 read_piece(uvec2 texel) {
-    return vec4(texel.x & 0xFFFFu, texel.x >> 16, texel.y & 0xFFFFu, texel.y >> 16);
+    // By way of signed integers, whose conversion is one instruction.
+    return vec4(ivec4(texel.x & 0xFFFFu, texel.x >> 16, texel.y & 0xFFFFu, texel.y >> 16));
 }
 
 // The height at which a ring piece crosses the cell's left border, or beyond every cell if it does not.

@@ -19,27 +19,52 @@ bool crosses_walk(vec4 piece, vec2 point) {
     return on_row != (border_crossing(piece) <= point.y);
 }
 
-bool crosses(Group group, vec4 piece, vec2 local) {
+bool meets(Group group, vec4 piece, vec2 local) {
     vec2 point = local * group.scale + float(COORDINATE_BIAS);
-#if defined(LINES) && defined(RINGS)
-    return group.is_line ? within_stroke(piece, point, group.half_width2) : crosses_walk(piece, point);
-#elif defined(LINES)
-    return within_stroke(piece, point, group.half_width2);
-#else
+    if (group.is_line) return within_stroke(piece, point, group.half_width2);
     return crosses_walk(piece, point);
-#endif
 }
 
-// Starts a group or goes on with it; true when its last piece is done.
-bool step_walk(inout uint at, inout Group group, inout bool covered, vec2 local) {
-    uvec2 texel = texelFetch(cell_texels, int(at++)).rg;
-    if (group.count == 0u) {
-        group = read_group(texel);
-        covered = group.covers;
-    } else {
-        bool hit = crosses(group, read_piece(texel), local);
-        covered = group.is_line ? covered || hit : covered != hit;
-        --group.count;
+// The state of a walk. Groups end where the next begins, or with the cell.
+struct Walk {
+    uint at;
+    uint end;
+    Group group;
+    bool covered;  // by the pieces of the group so far
+};
+
+Walk begin_walk(ivec2 cell) {
+    uvec2 range = cell_range(cell);
+    Walk walk;
+    walk.at = range.x;
+    walk.end = range.y;
+    walk.group.slot = 0u;
+    walk.group.is_line = false;
+    walk.group.scale = 1.0;
+    walk.group.half_width2 = 0.0;
+    walk.covered = false;
+    return walk;
+}
+
+// Goes on to the next feature that covers the point and puts its slot into `slot`; false when there is none.
+bool next_feature(inout Walk walk, vec2 local, out uint slot) {
+    bool found = false;
+    while (walk.at < walk.end && !found) {
+        uvec2 texel = texelFetch(cell_texels, int(walk.at++)).rg;
+        if (is_header(texel)) {
+            found = walk.covered;
+            slot = walk.group.slot;
+            walk.group = read_group(texel);
+            walk.covered = covers_corner(texel);
+        } else {
+            bool hit = meets(walk.group, read_piece(texel), local);
+            walk.covered = walk.group.is_line ? walk.covered || hit : walk.covered != hit;
+        }
     }
-    return group.count == 0u;
+    if (!found && walk.covered) {
+        found = true;
+        slot = walk.group.slot;
+        walk.covered = false;
+    }
+    return found;
 }

@@ -1,6 +1,7 @@
 // Static decals, seen through one point a pixel or through 32 samples of its area.
 //
 // LINES, RINGS   the kinds of feature there are
+// ONE_WIDTH      all lines are of one width: no need to look theirs up
 // TRANSLUCENT    some feature is not opaque
 // COVERAGE       the samples' mean, else the pixel's centre alone
 // IDS            writes 1 + slot of the topmost feature at the centre instead of a colour
@@ -21,18 +22,9 @@ uniform sampler2D surface_texture;
 layout(location = 0) out uint id;
 
 uint topmost(CellPosition position) {
-    uvec2 range = cell_range(position.cell);
-    Group group;
-    group.count = 0u;
-    bool covered = false;
-    uint found = 0u;
-    for (uint at = range.x; at < range.y;) {
-        if (step_walk(at, group, covered, position.local) && covered) {
-            found = group.slot + 1u;
-            at = range.y;
-        }
-    }
-    return found;
+    Walk walk = begin_walk(position.cell);
+    uint slot;
+    return next_feature(walk, position.local, slot) ? slot + 1u : 0u;
 }
 #else
 layout(location = 0) out vec4 color;
@@ -41,16 +33,12 @@ layout(location = 0) out vec4 color;
 #if !defined(IDS) && !defined(COVERAGE)
 // Front to back, until nothing behind can show.
 vec4 composite(CellPosition position) {
-    uvec2 range = cell_range(position.cell);
-    Group group;
-    group.count = 0u;
-    bool covered = false;
+    Walk walk = begin_walk(position.cell);
     vec4 sum = vec4(0.0);
-    for (uint at = range.x; at < range.y;) {
-        if (step_walk(at, group, covered, position.local) && covered) {
-            sum += (1.0 - sum.a) * vec4(group.color.rgb * group.color.a, group.color.a);
-            if (sum.a >= 0.999) at = range.y;
-        }
+    uint slot;
+    while (sum.a < 0.999 && next_feature(walk, position.local, slot)) {
+        vec4 straight = color_of(slot);
+        sum += (1.0 - sum.a) * vec4(straight.rgb * straight.a, straight.a);
     }
     return sum;
 }

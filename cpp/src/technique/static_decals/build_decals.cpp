@@ -22,7 +22,7 @@
 namespace decalgl {
 namespace {
 
-constexpr size_t vertices_per_run = 1 << 15;
+constexpr size_t vertices_per_run = 1 << 16;
 
 struct Run {
     size_t first_slot;
@@ -53,6 +53,8 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
                 const double half_width = 0.5 * layer.width(feature) / decals.grid.quantum;
                 style.half_width = static_cast<float>(half_width);
                 decals.largest_scale = std::max(decals.largest_scale, line_scale(half_width));
+                decals.widest = std::max(decals.widest, style.half_width);
+                decals.narrowest = decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
             }
             decals.slots.push_back({input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
             decals.styles.push_back(style);
@@ -118,7 +120,7 @@ std::vector<CellRecords> make_all_records(const TechniqueInput& input, const Pre
 }
 
 struct Buckets {
-    std::vector<CellRecord> records;
+    LargeArray<CellRecord> records;
     std::vector<size_t> starts;  // bucket_count() + 1
 };
 
@@ -155,7 +157,7 @@ void write_stream(const TechniqueInput& input, const Buckets& buckets, PreparedD
         return Span<const CellRecord>(buckets.records.data() + buckets.starts[bucket],
                                       buckets.starts[bucket + 1] - buckets.starts[bucket]);
     };
-    decals.cell_starts.assign(size_t{bucket_count} * BUCKET_CELLS + 1, 0);
+    decals.cell_starts.resize(size_t{bucket_count} * BUCKET_CELLS + 1);
     std::vector<uint64_t> sizes(bucket_count);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
         for (size_t bucket = begin; bucket < end; ++bucket)

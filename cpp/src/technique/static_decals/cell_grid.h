@@ -29,10 +29,6 @@ struct CellGrid {
     double left() const { return positions.origin_x + static_cast<double>(first_cell_x) * cell_size; }
     double bottom() const { return positions.origin_y + static_cast<double>(first_cell_y) * cell_size; }
 
-    // A map position on the lattice, counted from the grid's lower left corner.
-    int64_t lattice_x(double x) const { return std::lrint((x - left()) / quantum); }
-    int64_t lattice_y(double y) const { return std::lrint((y - bottom()) / quantum); }
-
     uint32_t bucket_count() const { return static_cast<uint32_t>(bucket_columns * bucket_rows); }
     uint32_t cell_count() const { return bucket_count() * BUCKET_CELLS; }
 
@@ -49,6 +45,22 @@ struct LatticePoint {
     int64_t y = 0;
 };
 
-inline bool operator==(const LatticePoint& a, const LatticePoint& b) { return a.x == b.x && a.y == b.y; }
+inline bool operator==(LatticePoint a, LatticePoint b) { return a.x == b.x && a.y == b.y; }
+
+// From map positions to the lattice, counted from the grid's lower left corner.
+class Lattice {
+  public:
+    explicit Lattice(const CellGrid& grid)
+        : left_(grid.left()), bottom_(grid.bottom()), quanta_per_metre_(1.0 / grid.quantum) {}
+
+    LatticePoint nearest(double x, double y) const {
+        return {std::lrint((x - left_) * quanta_per_metre_), std::lrint((y - bottom_) * quanta_per_metre_)};
+    }
+
+  private:
+    double left_;
+    double bottom_;
+    double quanta_per_metre_;  // a power of two: multiplying by it is exact
+};
 
 }  // namespace decalgl

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "decalgl/core/large_array.h"
 #include "technique/static_decals/cell_grid.h"
 
 namespace decalgl {
@@ -15,8 +16,9 @@ struct CellRecord {
 };
 static_assert(sizeof(CellRecord) == 16, "records are partitioned by the million");
 
-// A record with this x0 marks cells that the feature covers (cell_stream.h): y0 of them, one row after another.
-constexpr uint16_t covers_marker = 0xFFFF;
+// A record with this x0, which no piece has, marks cells that the feature covers (cell_stream.h): y0 of them, one row
+// after another.
+constexpr uint16_t covers_marker = HEADER_MARK;
 
 class CellRecords {
   public:
@@ -41,15 +43,15 @@ class CellRecords {
     }
 
     const CellGrid& grid() const { return *grid_; }
-    const std::vector<CellRecord>& records() const { return records_; }
+    const LargeArray<CellRecord>& records() const { return records_; }
     const std::vector<uint32_t>& bucket_sizes() const { return bucket_sizes_; }
     void reserve(size_t count) { records_.reserve(count); }
-    void release() { std::vector<CellRecord>().swap(records_); }
+    void release() { LargeArray<CellRecord>().swap(records_); }
 
   private:
     const CellGrid* grid_;
     uint32_t slot_ = 0;
-    std::vector<CellRecord> records_;
+    LargeArray<CellRecord> records_;
     std::vector<uint32_t> bucket_sizes_;
 };
 

@@ -75,14 +75,13 @@ void write_bucket_texels(Span<const CellRecord> records, const std::vector<Decal
         [&](const OpenCell& cell, uint32_t slot, bool is_line) {
             const auto half_width = static_cast<double>(styles[slot].half_width);
             const uint32_t scale = is_line ? static_cast<uint32_t>(line_scale(half_width)) : 0;
-            texels[cell.header] = {slot, scale << GROUP_SCALE_SHIFT | (is_line ? GROUP_LINE : 0)};
+            texels[cell.header] = {HEADER_MARK | scale << GROUP_SCALE_SHIFT | (is_line ? GROUP_LINE : 0), slot};
         },
         [&](const OpenCell& cell, const CellRecord& record) {
             texels[cell.end] = {record.x0 | static_cast<uint32_t>(record.y0) << 16,
                                 record.x1 | static_cast<uint32_t>(record.y1) << 16};
-            ++texels[cell.header].y;
         },
-        [&](const OpenCell& cell) { texels[cell.header].y |= GROUP_COVERS; });
+        [&](const OpenCell& cell) { texels[cell.header].x |= GROUP_COVERS; });
 }
 
 }  // namespace decalgl

@@ -10,8 +10,15 @@ enum class Wanted { covered_cells, pieces };
 
 struct Stroke {
     double half_width;  // quanta
+    int64_t reach;      // half width, rounded up
     int scale;
     Wanted wanted;
+
+    Stroke(double half_width_in_quanta, Wanted what)
+        : half_width(half_width_in_quanta),
+          reach(static_cast<int64_t>(std::ceil(half_width_in_quanta))),
+          scale(line_scale(half_width_in_quanta)),
+          wanted(what) {}
 
     bool can_cover_cells() const { return half_width >= CELL_QUANTA * 0.7072; }
 };
@@ -83,49 +90,59 @@ void add_piece(LatticePoint a, LatticePoint b, const Stroke& stroke, int32_t col
     if (covers) return;
     const int64_t left = int64_t{column} * CELL_QUANTA - COORDINATE_BIAS;
     const int64_t bottom = int64_t{row} * CELL_QUANTA - COORDINATE_BIAS;
-    const auto fits = [](int64_t value) { return value >= 0 && value <= COORDINATE_MAX; };
-    if (stroke.scale == 0 && fits(a.x - left) && fits(a.y - bottom) && fits(b.x - left) && fits(b.y - bottom))
-        records.add_piece(records.grid().cell_index(column, row), static_cast<uint16_t>(a.x - left),
-                          static_cast<uint16_t>(a.y - bottom), static_cast<uint16_t>(b.x - left),
-                          static_cast<uint16_t>(b.y - bottom));
+    const int64_t x0 = a.x - left, y0 = a.y - bottom, x1 = b.x - left, y1 = b.y - bottom;
+    const bool fits = stroke.scale == 0 && ((x0 | y0 | x1 | y1) & ~int64_t{0xFFFF}) == 0 && x0 != covers_marker;
+    if (fits)
+        records.add_piece(records.grid().cell_index(column, row), static_cast<uint16_t>(x0),
+                          static_cast<uint16_t>(y0), static_cast<uint16_t>(x1), static_cast<uint16_t>(y1));
     else
         add_clipped_piece(a, b, stroke, column, row, records);
 }
 
-int32_t cell_of(double quanta, int32_t count) {
-    return static_cast<int32_t>(std::clamp(std::floor(quanta / CELL_QUANTA), -1.0, static_cast<double>(count)));
-}
+// The cells of a row or column of `count` that reach from `low` to `high` touches, in quanta.
+struct CellSpan {
+    int32_t first;
+    int32_t last;
+
+    CellSpan(int64_t low, int64_t high, int32_t count)
+        : first(static_cast<int32_t>(std::max<int64_t>(low >> CELL_BITS, 0))),
+          last(static_cast<int32_t>(std::min<int64_t>(high >> CELL_BITS, count - 1))) {}
+};
 
 // Column by column: the rows that the widened segment reaches there.
 void add_segment(LatticePoint a, LatticePoint b, const Stroke& stroke, CellRecords& records) {
     const CellGrid& grid = records.grid();
-    const double r = stroke.half_width;
+    const int64_t reach = stroke.reach;
+    const CellSpan columns(std::min(a.x, b.x) - reach, std::max(a.x, b.x) + reach, grid.columns);
+    const CellSpan rows(std::min(a.y, b.y) - reach, std::max(a.y, b.y) + reach, grid.rows);
+    if (columns.first == columns.last || rows.first == rows.last) {
+        for (int32_t column = columns.first; column <= columns.last; ++column)
+            for (int32_t row = rows.first; row <= rows.last; ++row) add_piece(a, b, stroke, column, row, records);
+        return;
+    }
     const auto ax = static_cast<double>(a.x), ay = static_cast<double>(a.y);
-    const auto bx = static_cast<double>(b.x), by = static_cast<double>(b.y);
-    const int32_t first_column = std::max(cell_of(std::min(ax, bx) - r, grid.columns), 0);
-    const int32_t last_column = std::min(cell_of(std::max(ax, bx) + r, grid.columns), grid.columns - 1);
-    for (int32_t column = first_column; column <= last_column; ++column) {
+    const double dx = static_cast<double>(b.x) - ax, dy = static_cast<double>(b.y) - ay;
+    for (int32_t column = columns.first; column <= columns.last; ++column) {
         Interval inside;
-        if (first_column != last_column)
-            inside.clip(ax, bx - ax, static_cast<double>(column) * CELL_QUANTA - r,
-                        static_cast<double>(column + 1) * CELL_QUANTA + r);
+        inside.clip(ax, dx, static_cast<double>(int64_t{column} * CELL_QUANTA - reach),
+                    static_cast<double>(int64_t{column + 1} * CELL_QUANTA + reach));
         if (inside.first > inside.last) continue;
-        const double y0 = ay + inside.first * (by - ay);
-        const double y1 = ay + inside.last * (by - ay);
-        const int32_t first_row = std::max(cell_of(std::min(y0, y1) - r, grid.rows), 0);
-        const int32_t last_row = std::min(cell_of(std::max(y0, y1) + r, grid.rows), grid.rows - 1);
-        for (int32_t row = first_row; row <= last_row; ++row) add_piece(a, b, stroke, column, row, records);
+        const auto y0 = static_cast<int64_t>(ay + inside.first * dy);
+        const auto y1 = static_cast<int64_t>(ay + inside.last * dy);
+        // One quantum more, for the rounding towards zero.
+        const CellSpan here(std::min(y0, y1) - reach - 1, std::max(y0, y1) + reach + 1, grid.rows);
+        for (int32_t row = here.first; row <= here.last; ++row) add_piece(a, b, stroke, column, row, records);
     }
 }
 
 void add_part(Span<const double> coordinates, const Stroke& stroke, CellRecords& records) {
-    const CellGrid& grid = records.grid();
+    const Lattice lattice(records.grid());
     const size_t count = coordinates.size() / 2;
     if (count == 0) return;
-    LatticePoint previous{grid.lattice_x(coordinates[0]), grid.lattice_y(coordinates[1])};
+    LatticePoint previous = lattice.nearest(coordinates[0], coordinates[1]);
     bool drawn = false;
     for (size_t i = 1; i < count; ++i) {
-        const LatticePoint next{grid.lattice_x(coordinates[2 * i]), grid.lattice_y(coordinates[2 * i + 1])};
+        const LatticePoint next = lattice.nearest(coordinates[2 * i], coordinates[2 * i + 1]);
         if (next == previous) continue;
         add_segment(previous, next, stroke, records);
         previous = next;
@@ -145,12 +162,12 @@ int line_scale(double half_width_in_quanta) {
 }
 
 void mark_covered_cells(Span<const double> coordinates, double half_width, CellRecords& records) {
-    const Stroke stroke{half_width, line_scale(half_width), Wanted::covered_cells};
+    const Stroke stroke(half_width, Wanted::covered_cells);
     if (stroke.can_cover_cells()) add_part(coordinates, stroke, records);
 }
 
 void add_line_pieces(Span<const double> coordinates, double half_width, CellRecords& records) {
-    add_part(coordinates, {half_width, line_scale(half_width), Wanted::pieces}, records);
+    add_part(coordinates, Stroke(half_width, Wanted::pieces), records);
 }
 
 }  // namespace decalgl

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "decalgl/core/large_array.h"
 #include "decalgl/technique/technique.h"
 #include "technique/static_decals/cell_grid.h"
 
@@ -14,6 +15,8 @@ struct CellTexel {
     uint32_t x;
     uint32_t y;
 };
+
+inline bool is_header(CellTexel texel) { return (texel.x & 0xFFFFU) == HEADER_MARK; }
 
 // As the shaders read it, one a slot.
 struct DecalStyle {
@@ -29,13 +32,15 @@ class PreparedDecals : public Prepared {
     std::vector<FeatureReference> query(double x, double y) const override;
 
     CellGrid grid;
-    std::vector<uint32_t> cell_starts;  // into texels, cell_count() + 1 of them
-    std::vector<CellTexel> texels;
+    LargeArray<uint32_t> cell_starts;  // into texels, cell_count() + 1 of them
+    LargeArray<CellTexel> texels;
     std::vector<DecalStyle> styles;
     std::vector<FeatureReference> slots;  // topmost first
     uint64_t segments = 0;
     uint64_t pieces = 0;
     int largest_scale = 0;
+    float widest = 0.0F;  // half widths of lines, in quanta
+    float narrowest = 0.0F;
     bool has_polygons = false;
     bool has_lines = false;
     bool has_translucency = false;

@@ -48,20 +48,19 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
     const uint32_t cell = grid.cell_index(column, row);
     for (uint32_t at = cell_starts[cell]; at < cell_starts[cell + 1];) {
         const CellTexel header = texels[at++];
-        const uint32_t end = at + (header.y & GROUP_COUNT_MASK);
-        const int scale = static_cast<int>(header.y >> GROUP_SCALE_SHIFT & GROUP_SCALE_MASK);
+        const int scale = static_cast<int>(header.x >> GROUP_SCALE_SHIFT & GROUP_SCALE_MASK);
         const double px = std::ldexp(local_x, -scale) + COORDINATE_BIAS;
         const double py = std::ldexp(local_y, -scale) + COORDINATE_BIAS;
-        const double radius = std::ldexp(static_cast<double>(styles[header.x].half_width), -scale);
-        bool covered = (header.y & GROUP_COVERS) != 0;
-        for (; at < end; ++at) {
+        const double radius = std::ldexp(static_cast<double>(styles[header.y].half_width), -scale);
+        bool covered = (header.x & GROUP_COVERS) != 0;
+        for (; at < cell_starts[cell + 1] && !is_header(texels[at]); ++at) {
             const Piece piece(texels[at]);
-            if (header.y & GROUP_LINE)
+            if (header.x & GROUP_LINE)
                 covered |= piece.within(px, py, radius);
             else
                 covered ^= piece.crosses_walk(px, py);
         }
-        if (covered) found.push_back(slots[header.x]);
+        if (covered) found.push_back(slots[header.y]);
     }
     return found;
 }

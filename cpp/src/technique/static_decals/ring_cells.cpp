@@ -30,12 +30,12 @@ uint16_t local(int64_t quanta, int64_t cell) {
 }  // namespace
 
 void RingCells::add_ring(Span<const double> coordinates) {
-    const CellGrid& grid = records_->grid();
+    const Lattice lattice(records_->grid());
     const size_t count = coordinates.size() / 2;
     if (count < 3) return;
-    LatticePoint previous{grid.lattice_x(coordinates[2 * count - 2]), grid.lattice_y(coordinates[2 * count - 1])};
+    LatticePoint previous = lattice.nearest(coordinates[2 * count - 2], coordinates[2 * count - 1]);
     for (size_t i = 0; i < count; ++i) {
-        const LatticePoint next{grid.lattice_x(coordinates[2 * i]), grid.lattice_y(coordinates[2 * i + 1])};
+        const LatticePoint next = lattice.nearest(coordinates[2 * i], coordinates[2 * i + 1]);
         const bool forward = previous.x < next.x || (previous.x == next.x && previous.y < next.y);
         if (forward)
             add_edge(previous, next);

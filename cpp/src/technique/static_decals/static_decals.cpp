@@ -14,8 +14,10 @@ std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& i
 
 void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
-    cell_starts_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, prepared_->cell_starts);
-    cell_texels_ = gl::TextureBuffer::from(memory, "static: pieces", GL_RG32UI, prepared_->texels);
+    cell_starts_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI,
+                                            Span<const uint32_t>(prepared_->cell_starts));
+    cell_texels_ = gl::TextureBuffer::from(memory, "static: pieces", GL_RG32UI,
+                                            Span<const CellTexel>(prepared_->texels));
     styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, prepared_->styles);
     no_vertices_ = gl::VertexArray::create();
 }
@@ -38,7 +40,9 @@ void StaticDecals::draw_ids(const View& view, const GBufferView& gbuffer, gl::Pr
 
 void StaticDecals::draw_full_screen(gl::Flags flags, const View& view, const GBufferView& gbuffer,
                                     gl::ProgramLibrary& programs) {
+    const bool one_width = prepared_->has_lines && prepared_->narrowest == prepared_->widest;
     if (prepared_->has_lines) flags.insert("LINES");
+    if (one_width) flags.insert("ONE_WIDTH");
     if (prepared_->has_polygons) flags.insert("RINGS");
     gl::Program& program = programs.get("static_decals", flags);
     const CellGrid& grid = prepared_->grid;
@@ -60,6 +64,11 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const View& view, const GBu
     program.set("first_cell", glm::ivec2(grid.first_cell_x, grid.first_cell_y));
     program.set("grid_size", glm::ivec2(grid.columns, grid.rows));
     program.set("bucket_columns", grid.bucket_columns);
+    if (one_width) {
+        const float scale = std::ldexp(1.0F, -prepared_->largest_scale);
+        program.set("line_scale", scale);
+        program.set("line_half_width2", prepared_->widest * scale * prepared_->widest * scale);
+    }
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
