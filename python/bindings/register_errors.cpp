@@ -14,22 +14,32 @@ namespace {
 
 const char* exception_name(ErrorKind kind) {
     switch (kind) {
-        case ErrorKind::input: return "InputError";
-        case ErrorKind::crs: return "CrsError";
-        case ErrorKind::style: return "StyleError";
-        case ErrorKind::file: return "FileError";
-        case ErrorKind::memory: return "MemoryLimitError";
-        case ErrorKind::graphics: return "GraphicsError";
-        case ErrorKind::cancelled: return "CancelledError";
-        case ErrorKind::unsupported: return "UnsupportedError";
+        case ErrorKind::input:
+            return "InputError";
+        case ErrorKind::crs:
+            return "CrsError";
+        case ErrorKind::style:
+            return "StyleError";
+        case ErrorKind::file:
+            return "FileError";
+        case ErrorKind::memory:
+            return "MemoryLimitError";
+        case ErrorKind::graphics:
+            return "GraphicsError";
+        case ErrorKind::cancelled:
+            return "CancelledError";
+        case ErrorKind::unsupported:
+            return "UnsupportedError";
     }
     return "DecalError";
 }
 
 // The core's messages are clauses; users read sentences.
 std::string sentence(std::string text) {
-    if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    if (!text.empty() && text.back() != '.') text += '.';
+    if (!text.empty())
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (!text.empty() && text.back() != '.')
+        text += '.';
     return text;
 }
 
@@ -43,13 +53,15 @@ void raise(const char* name, const char* message) {
 void register_errors(py::module_&) {
     py::register_exception_translator([](std::exception_ptr pending) {
         try {
-            if (pending) std::rethrow_exception(pending);
+            if (pending)
+                std::rethrow_exception(pending);
         } catch (const Error& error) {
             raise(exception_name(error.kind()), error.what());
         } catch (const std::length_error&) {
             raise("MemoryLimitError", "this would be larger than memory can hold; draw less at once");
         } catch (const std::bad_alloc&) {
-            raise("MemoryLimitError", "the machine has no memory left for this; draw less at once, or set memory_limit");
+            raise("MemoryLimitError",
+                  "the machine has no memory left for this; draw less at once, or set memory_limit");
         }
     });
 }

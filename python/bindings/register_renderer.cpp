@@ -14,23 +14,29 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-glm::dvec3 to_glm(const Vector& v) { return {v[0], v[1], v[2]}; }
+glm::dvec3 to_glm(const Vector& v) {
+    return {v[0], v[1], v[2]};
+}
 
 Antialias antialias_named(const std::string& name) {
-    if (name == "none") return Antialias::none;
-    if (name == "coverage") return Antialias::coverage;
+    if (name == "none")
+        return Antialias::none;
+    if (name == "coverage")
+        return Antialias::coverage;
     throw Error(ErrorKind::input, "there is no antialias '" + name + "'; choose none or coverage");
 }
 
 // A read-only view of a frame's values, which keeps the frame.
 template <typename T>
-py::array_t<T> view_of(const std::vector<T>& values, std::vector<py::ssize_t> shape, const py::object& owner) {
+py::array_t<T> view_of(const std::vector<T>& values, std::vector<py::ssize_t> shape,
+                       const py::object& owner) {
     py::array_t<T> array(std::move(shape), values.data(), owner);
     array.attr("flags").attr("writeable") = false;
     return array;
 }
 
-// Progress is told with the interpreter held; an exception of the callback stops the work and comes back as it was.
+// Progress is told with the interpreter held; an exception of the callback stops the work and comes back as
+// it was.
 void preprocess(Renderer& renderer, const Scene& scene, const py::object& progress) {
     ProgressFn callback;
     if (!progress.is_none()) {
@@ -54,16 +60,19 @@ py::dict stats_of(const Frame& frame) {
         passes.append(entry);
     }
     py::dict preprocess;
-    for (const TimedPass& pass : stats.preprocess) preprocess[py::str(pass.name)] = pass.ms;
+    for (const TimedPass& pass : stats.preprocess)
+        preprocess[py::str(pass.name)] = pass.ms;
     py::dict stages;
     stages["preprocess"] = stats.preprocess_ms;
     stages["update"] = stats.update_ms;
     stages["render"] = stats.render_ms;
     stages["readback"] = stats.readback_ms;
     py::dict bytes;
-    for (const auto& [name, count] : stats.bytes) bytes[py::str(name)] = count;
+    for (const auto& [name, count] : stats.bytes)
+        bytes[py::str(name)] = count;
     py::dict counts;
-    for (const auto& [name, count] : stats.counts) counts[py::str(name)] = count;
+    for (const auto& [name, count] : stats.counts)
+        counts[py::str(name)] = count;
     py::dict result;
     result["passes"] = passes;
     result["stages"] = stages;
@@ -79,7 +88,8 @@ auto frame_array(Values values, int components) {
     return [values, components](const py::object& self) {
         const auto& frame = py::cast<const Frame&>(self);
         std::vector<py::ssize_t> shape{frame.height(), frame.width()};
-        if (components > 1) shape.push_back(components);
+        if (components > 1)
+            shape.push_back(components);
         return view_of((frame.*values)(), std::move(shape), self);
     };
 }
@@ -96,7 +106,8 @@ void register_frame(py::module_& module) {
             "pick",
             [](const Frame& frame, int x, int y) {
                 std::vector<std::pair<int32_t, int64_t>> picked;
-                for (const PickedFeature& feature : frame.pick(x, y)) picked.emplace_back(feature.layer, feature.row);
+                for (const PickedFeature& feature : frame.pick(x, y))
+                    picked.emplace_back(feature.layer, feature.row);
                 return picked;
             },
             py::arg("x"), py::arg("y"));
@@ -106,7 +117,8 @@ void register_frame(py::module_& module) {
 
 void register_renderer(py::module_& module) {
     py::class_<Camera>(module, "Camera")
-        .def(py::init([](const Vector& eye, const Vector& target, const Vector& up, double fov, double view_height) {
+        .def(py::init([](const Vector& eye, const Vector& target, const Vector& up, double fov,
+                         double view_height) {
                  Camera camera = Camera::look_at(to_glm(eye), to_glm(target), fov);
                  camera.up = to_glm(up);
                  camera.view_height = view_height;

@@ -42,14 +42,16 @@ std::shared_ptr<const FeatureArrays> keep(FeatureArrays arrays) {
 }
 
 Heightfield make_terrain(const Array<float>& heights, double x0, double y0, double dx, double dy) {
-    if (heights.ndim() != 2) throw Error(ErrorKind::input, "terrain: heights must have two dimensions");
+    if (heights.ndim() != 2)
+        throw Error(ErrorKind::input, "terrain: heights must have two dimensions");
     return Heightfield(vector_of(heights), static_cast<int32_t>(heights.shape(0)),
                        static_cast<int32_t>(heights.shape(1)), x0, y0, dx, dy);
 }
 
 void add_layer(Scene& scene, const std::string& name, bool polygons, const Array<double>& coordinates,
-               const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets, const Array<int64_t>& rows,
-               const Array<uint8_t>& colors, const Array<double>& widths, const Array<int64_t>& draw_order) {
+               const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets,
+               const Array<int64_t>& rows, const Array<uint8_t>& colors, const Array<double>& widths,
+               const Array<int64_t>& draw_order) {
     if (coordinates.ndim() != 2 || coordinates.shape(1) != 2)
         throw Error(ErrorKind::input, "layer '" + name + "': coordinates must have the shape (vertices, 2)");
     if (std::any_of(rows.data(), rows.data() + rows.size(), [](int64_t row) { return row < 0; }))
@@ -85,19 +87,19 @@ void register_scene(py::module_& module) {
         .def_readwrite("on_layers", &Relief::on_layers);
 
     py::class_<Scene>(module, "Scene")
-        .def(py::init([](const Array<float>& heights, double x0, double y0, double dx, double dy, double exaggeration,
-                         const Relief& relief) {
+        .def(py::init([](const Array<float>& heights, double x0, double y0, double dx, double dy,
+                         double exaggeration, const Relief& relief) {
                  Scene scene;
                  scene.terrain = make_terrain(heights, x0, y0, dx, dy);
                  scene.exaggeration = exaggeration;
                  scene.relief = relief;
                  return scene;
              }),
-             py::arg("heights"), py::arg("x0"), py::arg("y0"), py::arg("dx"), py::arg("dy"), py::arg("exaggeration"),
-             py::arg("relief"))
+             py::arg("heights"), py::arg("x0"), py::arg("y0"), py::arg("dx"), py::arg("dy"),
+             py::arg("exaggeration"), py::arg("relief"))
         .def("add_layer", &add_layer, py::arg("name"), py::arg("polygons"), py::arg("coordinates"),
-             py::arg("part_offsets"), py::arg("feature_offsets"), py::arg("rows"), py::arg("colors"), py::arg("widths"),
-             py::arg("draw_order"));
+             py::arg("part_offsets"), py::arg("feature_offsets"), py::arg("rows"), py::arg("colors"),
+             py::arg("widths"), py::arg("draw_order"));
 }
 
 }  // namespace decalgl::bindings

@@ -90,6 +90,9 @@ TEST_CASE("the demo says what is wrong and ends with code 2") {
     CHECK(run(small + "--data '" + folder.path.string() + "'", messages) == 2);
     CHECK_THAT(text_of(messages), Catch::Contains("dem.tif") && Catch::Contains("Check the path"));
 
+    CHECK(run(small + "--data '" + (folder.path / "nowhere").string() + "'", messages) == 2);
+    CHECK_THAT(text_of(messages), Catch::Contains("--data"));
+
     fs::copy_file(data / "dem.tif", folder.path / "dem.tif");
     CHECK(run(small + "--data '" + folder.path.string() + "'", messages) == 2);
     CHECK_THAT(text_of(messages), Catch::Contains("landcover.topojson.gz"));

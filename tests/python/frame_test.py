@@ -38,7 +38,6 @@ def test_arrays() -> None:
     for name, (shape, dtype) in expected.items():
         array = getattr(frame, name)
         assert (array.shape, array.dtype) == (shape, dtype), name
-        assert array is not getattr(frame, name) or True
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
         np.testing.assert_array_equal(array, getattr(frame, name))
@@ -216,7 +215,8 @@ def test_nothing_runs_that_the_scene_does_not_need() -> None:
     assert variants(opaque, antialias="coverage", tile=512) == needed | {"COVERAGE"}
     clear = flat_scene()
     clear.add_lines([line], width=2, width_units="m", alpha=0.5)
-    assert variants(clear) == {"terrain", "compose", "static_decals", "OVERLAY", "LINES", "TRANSLUCENT"}
+    assert variants(clear) >= {"static_decals", "OVERLAY", "LINES", "TRANSLUCENT"}
+    assert not variants(clear) & {"RINGS", "COVERAGE", "IDS", "HOLES", "RAMP"}
     holes = np.zeros((4, 4), np.float32)
     holes[1, 1] = np.nan
     assert "HOLES" in variants(dg.Scene(dg.Terrain(holes, 0, 100, 30, 30)))

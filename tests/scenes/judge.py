@@ -164,8 +164,8 @@ def surface_height(scene: dg.Scene, xy: FloatArray) -> FloatArray:
     rows, columns = heights.shape
     u = (xy[:, 0] - terrain.x0) / terrain.dx
     v = (terrain.y0 - xy[:, 1]) / terrain.dy
-    column = np.clip(np.floor(u), 0, columns - 2).astype(np.int64)
-    row = np.clip(np.floor(v), 0, rows - 2).astype(np.int64)
+    column = np.clip(np.floor(np.nan_to_num(u)), 0, columns - 2).astype(np.int64)
+    row = np.clip(np.floor(np.nan_to_num(v)), 0, rows - 2).astype(np.int64)
     u, v = u - column, v - row
     northwest, northeast = heights[row, column], heights[row, column + 1]
     southwest, southeast = heights[row + 1, column], heights[row + 1, column + 1]

@@ -362,7 +362,7 @@ def eye_at_one_metre() -> View:
 def eye_at_500_km() -> View:
     """From orbit through a long lens: the hills fill the picture."""
     eye = (-150_000.0, -250_000.0, 400_000.0)
-    return View(hills_scene(), dg.Camera.look_at(eye, (0.0, 0.0, 0.0), fov=0.25), SIZE)
+    return View(hills_scene(), dg.Camera.look_at(eye, (0.0, 0.0, 0.0), fov=0.05), SIZE)
 
 
 @_named

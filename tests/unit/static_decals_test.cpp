@@ -59,7 +59,8 @@ void require_well_formed(const PreparedDecals& decals) {
             REQUIRE(header.y < decals.slots.size());
             previous_slot = header.y;
             uint32_t pieces = 0;
-            for (; at < end && !is_header(decals.texels[at]); ++at) ++pieces;
+            for (; at < end && !is_header(decals.texels[at]); ++at)
+                ++pieces;
             REQUIRE((pieces > 0 || (header.x & GROUP_COVERS) != 0));
         }
         REQUIRE(decals.cell_starts[cell] <= end);
@@ -77,7 +78,8 @@ bool inside(const CellGrid& grid, const Ring& ring, double x, double y) {
         const double ay = grid.bottom() + static_cast<double>(snapped(i).y) * grid.quantum;
         const double bx = grid.left() + static_cast<double>(snapped(j).x) * grid.quantum;
         const double by = grid.bottom() + static_cast<double>(snapped(j).y) * grid.quantum;
-        if ((ay <= y) != (by <= y) && ax + (y - ay) / (by - ay) * (bx - ax) <= x) result = !result;
+        if ((ay <= y) != (by <= y) && ax + (y - ay) / (by - ay) * (bx - ax) <= x)
+            result = !result;
     }
     return result;
 }
@@ -104,10 +106,12 @@ struct RandomMap {
     std::mt19937 engine;
     explicit RandomMap(unsigned seed) : engine(seed) {}
 
-    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
+    double between(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine);
+    }
 
-    // Vertices spread around the bounds; with `snap` above 0 they fall on multiples of it, so that edges run along
-    // cell borders and meet at cell corners.
+    // Vertices spread around the bounds; with `snap` above 0 they fall on multiples of it, so that edges run
+    // along cell borders and meet at cell corners.
     Ring part(int vertices, double size, double snap) {
         const double x = between(test_bounds.min_x - 200, test_bounds.max_x + 200);
         const double y = between(test_bounds.min_y - 200, test_bounds.max_y + 200);
@@ -129,19 +133,23 @@ TEST_CASE("polygons agree with brute force at random points", "[static]") {
     const double snap = GENERATE(0.0, 0.5, 8.0);
     RandomMap random(static_cast<unsigned>(size * 10 + snap));
     std::vector<Ring> rings;
-    for (int i = 0; i < 25; ++i) rings.push_back(random.part(3 + i % 9, size, snap));
+    for (int i = 0; i < 25; ++i)
+        rings.push_back(random.part(3 + i % 9, size, snap));
     const auto decals = build({polygons(rings)});
     require_well_formed(*decals);
     for (int sample = 0; sample < 3000; ++sample) {
         const Ring& near = rings[static_cast<size_t>(sample) % rings.size()];
         double x = std::clamp(near[0] + random.between(-size, size), test_bounds.min_x, test_bounds.max_x);
         double y = std::clamp(near[1] + random.between(-size, size), test_bounds.min_y, test_bounds.max_y);
-        if (snap > 0.0 && sample % 3 == 0) x = std::clamp(std::round(x / snap) * snap, test_bounds.min_x, test_bounds.max_x);
+        if (snap > 0.0 && sample % 3 == 0)
+            x = std::clamp(std::round(x / snap) * snap, test_bounds.min_x, test_bounds.max_x);
         std::vector<bool> found(rings.size(), false);
-        for (const FeatureReference& reference : decals->query(x, y)) found[reference.feature] = true;
+        for (const FeatureReference& reference : decals->query(x, y))
+            found[reference.feature] = true;
         for (size_t i = 0; i < rings.size(); ++i) {
             // Cuts at cell borders are rounded: within a quantum and a half of an edge either answer stands.
-            if (distance_to_ring(rings[i], x, y) <= 1.5 * decals->grid.quantum) continue;
+            if (distance_to_ring(rings[i], x, y) <= 1.5 * decals->grid.quantum)
+                continue;
             REQUIRE(found[i] == inside(decals->grid, rings[i], x, y));
         }
     }
@@ -152,22 +160,28 @@ TEST_CASE("lines agree with brute force at random points", "[static]") {
     const double size = GENERATE(0.5, 60.0, 3000.0);
     RandomMap random(static_cast<unsigned>(width * 100 + size));
     std::vector<Ring> parts;
-    for (int i = 0; i < 25; ++i) parts.push_back(random.part(1 + i % 7, size, 0.0));
+    for (int i = 0; i < 25; ++i)
+        parts.push_back(random.part(1 + i % 7, size, 0.0));
     const auto decals = build({lines(parts, {width})});
     require_well_formed(*decals);
     const double tolerance = 1.5 * decals->counts().quantum;
     for (int sample = 0; sample < 3000; ++sample) {
         const Ring& near = parts[static_cast<size_t>(sample) % parts.size()];
         const double reach = width + size;
-        const double x = std::clamp(near[0] + random.between(-reach, reach), test_bounds.min_x, test_bounds.max_x);
-        const double y = std::clamp(near[1] + random.between(-reach, reach), test_bounds.min_y, test_bounds.max_y);
+        const double x =
+            std::clamp(near[0] + random.between(-reach, reach), test_bounds.min_x, test_bounds.max_x);
+        const double y =
+            std::clamp(near[1] + random.between(-reach, reach), test_bounds.min_y, test_bounds.max_y);
         std::vector<bool> found(parts.size(), false);
-        for (const FeatureReference& reference : decals->query(x, y)) found[reference.feature] = true;
+        for (const FeatureReference& reference : decals->query(x, y))
+            found[reference.feature] = true;
         for (size_t i = 0; i < parts.size(); ++i) {
             Ring line = parts[i];
-            if (line.size() == 2) line.insert(line.end(), {line[0], line[1]});
+            if (line.size() == 2)
+                line.insert(line.end(), {line[0], line[1]});
             const double distance = distance_to(line, x, y);
-            if (std::abs(distance - 0.5 * width) > tolerance) REQUIRE(found[i] == (distance < 0.5 * width));
+            if (std::abs(distance - 0.5 * width) > tolerance)
+                REQUIRE(found[i] == (distance < 0.5 * width));
         }
     }
 }
@@ -216,15 +230,18 @@ TEST_CASE("the same bytes on any number of threads", "[static]") {
     RandomMap random(11);
     std::vector<Ring> rings;
     std::vector<Ring> parts;
-    for (int i = 0; i < 4000; ++i) rings.push_back(random.part(40, 30.0, 0.0));
-    for (int i = 0; i < 2000; ++i) parts.push_back(random.part(60, 80.0, 0.0));
+    for (int i = 0; i < 4000; ++i)
+        rings.push_back(random.part(40, 30.0, 0.0));
+    for (int i = 0; i < 2000; ++i)
+        parts.push_back(random.part(60, 80.0, 0.0));
     const std::vector<Layer> layers{polygons(rings), lines(parts, {3.0})};
     const auto one = build(layers, 1);
     const auto many = build(layers, 5);
     require_well_formed(*one);
     REQUIRE(one->cell_starts == many->cell_starts);
     const auto same = [](CellTexel a, CellTexel b) { return a.x == b.x && a.y == b.y; };
-    REQUIRE(std::equal(one->texels.begin(), one->texels.end(), many->texels.begin(), many->texels.end(), same));
+    REQUIRE(
+        std::equal(one->texels.begin(), one->texels.end(), many->texels.begin(), many->texels.end(), same));
 }
 
 TEST_CASE("draw order, transparent features and rows", "[static]") {
@@ -243,7 +260,8 @@ TEST_CASE("draw order, transparent features and rows", "[static]") {
 TEST_CASE("cancelling stops the build", "[static]") {
     RandomMap random(3);
     std::vector<Ring> rings;
-    for (int i = 0; i < 2000; ++i) rings.push_back(random.part(50, 50.0, 0.0));
+    for (int i = 0; i < 2000; ++i)
+        rings.push_back(random.part(50, 50.0, 0.0));
     const std::vector<Layer> layers{polygons(rings)};
     TechniqueInput input;
     input.layers = layers;

@@ -39,8 +39,8 @@ float sample_height(ivec2 sample_index) {
     return texelFetch(heights, sample_index, 0).r;
 }
 
-// A surface point relative to the eye. The integer difference comes first: it is exact.
-vec3 relative_to_eye(ivec2 sample_index, float height) {
-    vec2 steps = vec2(sample_index - eye_sample.xy) - eye_sample_fraction.xy;
-    return vec3(steps.x * spacing.x, -steps.y * spacing.y, (height - eye_sample_fraction.z) - eye_sample_fraction.w);
+// A surface point relative to the base. The integer difference comes first: it is exact.
+vec3 relative_to_base(ivec2 sample_index, float height) {
+    vec2 steps = vec2(sample_index - base_sample.xy) - base_sample_fraction.xy;
+    return vec3(steps.x * spacing.x, -steps.y * spacing.y, (height - base_sample_fraction.z) - base_sample_fraction.w);
 }

@@ -11,7 +11,7 @@ void main() {
     ivec2 index = mesh_sample(ivec2(gl_VertexID % side, gl_VertexID / side));
     float height = sample_height(index);
     if (height < missing_height) height = stand_in_height;
-    vec4 clip = clip_from_eye * vec4(relative_to_eye(index, height), 1.0);
+    vec4 clip = clip_from_base * vec4(relative_to_base(index, height), 1.0);
     if (clip.w > 0.0) {
         vec2 steps = 128.0 * spacing.zw;
         clip.xy = round(clip.xy / clip.w * steps) / steps * clip.w;

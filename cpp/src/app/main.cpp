@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <string>
@@ -106,6 +107,12 @@ void draw(const Options& options) {
     renderer_options.antialias = options.antialias == "none" ? Antialias::none : Antialias::coverage;
     renderer_options.backend = options.backend;
     Renderer renderer(renderer_options);
+    if (!std::filesystem::is_directory(options.data)) {
+        throw Error(ErrorKind::file,
+                    fmt::format("There is no folder '{}' to read the scene from. Run this from the "
+                                "project's own folder, or name examples/data/honolulu with --data.",
+                                options.data));
+    }
 
     ProgressLine line;
     const ProgressFn progress = std::ref(line);

@@ -56,7 +56,8 @@ CameraBasis basis_of(const Camera& camera) {
     const glm::dvec3 forward = glm::normalize(towards);
     glm::dvec3 right = glm::cross(forward, camera.up);
     // Straight up or down: north is up in the picture.
-    if (glm::length(right) < 1e-9 * std::max(glm::length(camera.up), 1e-300)) right = {1.0, 0.0, 0.0};
+    if (glm::length(right) < 1e-9 * std::max(glm::length(camera.up), 1e-300))
+        right = {1.0, 0.0, 0.0};
     right = glm::normalize(right);
     return {right, glm::cross(right, forward), forward};
 }

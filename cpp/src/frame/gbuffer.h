@@ -7,7 +7,7 @@
 namespace decalgl {
 
 class GBuffer {
-  public:
+public:
     GBuffer() = default;
     GBuffer(int width, int height, const MemoryAccount& memory);
 

@@ -16,16 +16,19 @@ namespace {
 constexpr int largest_rectangle = 4096;
 
 gl::Backend backend_named(const std::string& name) {
-    if (name == "auto") return gl::Backend::automatic;
-    if (name == "egl") return gl::Backend::egl;
-    if (name == "osmesa") return gl::Backend::osmesa;
+    if (name == "auto")
+        return gl::Backend::automatic;
+    if (name == "egl")
+        return gl::Backend::egl;
+    if (name == "osmesa")
+        return gl::Backend::osmesa;
     throw Error(ErrorKind::input, "there is no backend '" + name + "'; choose auto, egl or osmesa");
 }
 
 bool same_view(const PictureRequest& a, const PictureRequest& b) {
     return a.camera.eye == b.camera.eye && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
-           a.camera.fov == b.camera.fov && a.camera.view_height == b.camera.view_height && a.width == b.width &&
-           a.height == b.height && a.terrain_error == b.terrain_error;
+           a.camera.fov == b.camera.fov && a.camera.view_height == b.camera.view_height &&
+           a.width == b.width && a.height == b.height && a.terrain_error == b.terrain_error;
 }
 
 // Copies a rectangle, whose rows come bottom first, into an array of the whole picture with row 0 at the top.
@@ -49,13 +52,15 @@ Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
     glDisable(GL_DITHER);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    view_buffer_ = gl::Buffer::create(memory_, "frame: view", sizeof(ViewBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    view_buffer_ =
+        gl::Buffer::create(memory_, "frame: view", sizeof(ViewBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
     no_vertices_ = gl::VertexArray::create();
 }
 
 bool Pipeline::draws(const PreparedScene* scene, const PictureRequest& request) const {
     return scene_.get() == scene && same_view(request_, request) && request_.antialias == request.antialias &&
-           request_.background.low == request.background.low && request_.background.high == request.background.high;
+           request_.background.low == request.background.low &&
+           request_.background.high == request.background.high;
 }
 
 void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
@@ -81,9 +86,10 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     }
     request_ = request;
     view_ = {request.width, request.height, scene_->positions, request.antialias};
-    view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain, scene_->positions);
     tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
                           request.terrain_error);
+    view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
+                                  scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     choose_rectangles();
     make_targets();
     UpdateReport report;
@@ -98,16 +104,18 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
 void Pipeline::choose_rectangles() {
     const gl::ContextInfo& limits = context_->info();
     if (request_.width > limits.max_viewport[0] || request_.height > limits.max_viewport[1])
-        throw Error(ErrorKind::memory, "a picture of " + std::to_string(request_.width) + " x " +
-                                           std::to_string(request_.height) + " pixels is larger than this driver's " +
-                                           std::to_string(limits.max_viewport[0]) + " x " +
-                                           std::to_string(limits.max_viewport[1]) + "; ask for a smaller size");
+        throw Error(ErrorKind::memory,
+                    "a picture of " + std::to_string(request_.width) + " x " +
+                        std::to_string(request_.height) + " pixels is larger than this driver's " +
+                        std::to_string(limits.max_viewport[0]) + " x " +
+                        std::to_string(limits.max_viewport[1]) + "; ask for a smaller size");
     const int wanted = options_.rectangle > 0 ? options_.rectangle : largest_rectangle;
     const int side = std::min(wanted, limits.max_texture_size);
     rectangles_.clear();
     for (int y = 0; y < request_.height; y += side)
         for (int x = 0; x < request_.width; x += side)
-            rectangles_.push_back({x, y, std::min(side, request_.width - x), std::min(side, request_.height - y)});
+            rectangles_.push_back(
+                {x, y, std::min(side, request_.width - x), std::min(side, request_.height - y)});
 }
 
 void Pipeline::make_targets() {
@@ -116,7 +124,8 @@ void Pipeline::make_targets() {
     const bool has_overlay = !techniques_.empty();
     const bool fits = picture_ && gbuffer_.width() == width && gbuffer_.height() == height &&
                       static_cast<bool>(overlay_) == has_overlay;
-    if (fits) return;
+    if (fits)
+        return;
     gbuffer_ = GBuffer();
     overlay_ = gl::Texture2D();
     picture_ = gl::Texture2D();
@@ -202,7 +211,8 @@ std::vector<uint8_t> Pipeline::draw_image() {
 std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     std::vector<std::vector<uint32_t>> ids(techniques_.size(), std::vector<uint32_t>(pixels, 0));
-    if (techniques_.empty()) return ids;
+    if (techniques_.empty())
+        return ids;
     const gl::Texture2D target =
         gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, gbuffer_.width(), gbuffer_.height());
     const gl::Framebuffer framebuffer = gl::Framebuffer::create("ids", {{GL_COLOR_ATTACHMENT0, &target}});
@@ -232,7 +242,7 @@ void Pipeline::draw_surface(std::vector<double>& world, std::vector<float>& dept
               rectangle, 4, request_.width, request_.height, surfaces);
     });
     gl::check_errors("reading the surface");
-    unpack_surface(positions, surfaces, request_, scene_->positions, world, depth);
+    unpack_surface(positions, surfaces, request_, scene_->positions, view_block_.forward.w, world, depth);
 }
 
 double Pipeline::time_floor() {

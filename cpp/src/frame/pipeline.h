@@ -2,8 +2,8 @@
 //
 //     for each rectangle:  G-buffer ─▶ overlay, one pass a technique ─▶ compose ─▶ read back
 //
-// A picture larger than a rectangle is drawn piece by piece with the projection and the levels of detail of the
-// whole, so the pieces fit without a seam.
+// A picture larger than a rectangle is drawn piece by piece with the projection and the levels of detail of
+// the whole, so the pieces fit without a seam.
 #pragma once
 
 #include <functional>
@@ -20,13 +20,13 @@
 namespace decalgl {
 
 class Pipeline {
-  public:
+public:
     explicit Pipeline(const RendererOptions& options, const MemoryAccount& memory);
 
     gl::Context& context() { return *context_; }
 
-    // Uploads what is not there yet and sets the view up. Throws Error(memory) where the picture is larger than
-    // the driver can draw or the budget holds.
+    // Uploads what is not there yet and sets the view up. Throws Error(memory) where the picture is larger
+    // than the driver can draw or the budget holds.
     UpdateReport update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
 
     // Everything below draws what update() was last given; arrays have row 0 at the top.
@@ -42,7 +42,7 @@ class Pipeline {
     std::vector<std::string> variants() const { return programs_.variants(); }
     uint64_t triangles() const { return triangles_; }
 
-  private:
+private:
     using RectangleFn = std::function<void(const Rectangle&)>;
 
     void upload(std::shared_ptr<const PreparedScene> scene);

@@ -19,7 +19,8 @@ void validate(const Heightfield& terrain) {
     const Bounds bounds = terrain.bounds();
     for (const double value : {bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y}) {
         if (!(std::abs(value) <= farthest))
-            throw Error(ErrorKind::input, "terrain: it reaches farther than 1e10 m from the origin; move it closer");
+            throw Error(ErrorKind::input,
+                        "terrain: it reaches farther than 1e10 m from the origin; move it closer");
     }
     const auto is_too_high = [](float height) { return std::abs(height) > highest; };
     if (std::any_of(terrain.heights().begin(), terrain.heights().end(), is_too_high))
@@ -39,7 +40,8 @@ void validate(const Relief& relief) {
 void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, PreparedScene& prepared) {
     const Stopwatch watch;
     progress.report(0.0);
-    prepared.terrain = scene.exaggeration == 1.0 ? scene.terrain : scene.terrain.exaggerated(scene.exaggeration);
+    prepared.terrain =
+        scene.exaggeration == 1.0 ? scene.terrain : scene.terrain.exaggerated(scene.exaggeration);
     validate(prepared.terrain);
     prepared.positions = PositionGrid::around(prepared.terrain.bounds());
     prepared.relief = scene.relief;
@@ -52,7 +54,8 @@ void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, Pr
 
 void prepare_layers(const Scene& scene, unsigned threads, const MemoryAccount& memory, Progress progress,
                     PreparedScene& prepared) {
-    if (scene.layers.empty()) return;
+    if (scene.layers.empty())
+        return;
     const Stopwatch watch;
     TechniqueInput input;
     input.layers = scene.layers;
@@ -66,13 +69,14 @@ void prepare_layers(const Scene& scene, unsigned threads, const MemoryAccount& m
     prepared.passes.push_back(std::move(pass));
     prepared.timings.add("static", watch.milliseconds());
     // Layers without anything to draw cost no pass.
-    if (prepared.passes.back().prepared->counts().features == 0) prepared.passes.pop_back();
+    if (prepared.passes.back().prepared->counts().features == 0)
+        prepared.passes.pop_back();
 }
 
 }  // namespace
 
-std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads, const MemoryAccount& memory,
-                                                   const ProgressFn& progress) {
+std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
+                                                   const MemoryAccount& memory, const ProgressFn& progress) {
     const Stopwatch watch;
     auto prepared = std::make_shared<PreparedScene>();
     validate(scene.relief);

@@ -29,11 +29,13 @@ struct PreparedScene {
     TimingLog timings{true};
     double milliseconds = 0.0;
 
-    int64_t row_of(FeatureReference reference) const { return features[reference.layer].rows[reference.feature]; }
+    int64_t row_of(FeatureReference reference) const {
+        return features[reference.layer].rows[reference.feature];
+    }
 };
 
 // Validates and prepares. Throws Error(input), Error(memory), Error(cancelled).
-std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads, const MemoryAccount& memory,
-                                                   const ProgressFn& progress);
+std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
+                                                   const MemoryAccount& memory, const ProgressFn& progress);
 
 }  // namespace decalgl

@@ -14,12 +14,15 @@ namespace {
 constexpr int largest_side = 1 << 20;
 
 void require_options(const RendererOptions& options) {
-    if (options.width < 1 || options.height < 1 || options.width > largest_side || options.height > largest_side)
-        throw Error(ErrorKind::input, "the picture's size must be at least 1 x 1 pixels and reasonable, not " +
-                                          std::to_string(options.width) + " x " + std::to_string(options.height));
+    if (options.width < 1 || options.height < 1 || options.width > largest_side ||
+        options.height > largest_side)
+        throw Error(ErrorKind::input,
+                    "the picture's size must be at least 1 x 1 pixels and reasonable, not " +
+                        std::to_string(options.width) + " x " + std::to_string(options.height));
     if (!(options.terrain_error >= 0.0))
         throw Error(ErrorKind::input, "terrain_error must be zero or more pixels");
-    if (options.rectangle < 0) throw Error(ErrorKind::input, "rectangle must be zero or more pixels");
+    if (options.rectangle < 0)
+        throw Error(ErrorKind::input, "rectangle must be zero or more pixels");
 }
 
 }  // namespace
@@ -40,8 +43,10 @@ struct RendererState {
     }
 
     // Makes the pipeline draw a request, whatever it drew last.
-    Pipeline& pipeline_for(const std::shared_ptr<const PreparedScene>& wanted, const PictureRequest& wanted_request) {
-        if (!pipeline->draws(wanted.get(), wanted_request)) pipeline->update(wanted, wanted_request);
+    Pipeline& pipeline_for(const std::shared_ptr<const PreparedScene>& wanted,
+                           const PictureRequest& wanted_request) {
+        if (!pipeline->draws(wanted.get(), wanted_request))
+            pipeline->update(wanted, wanted_request);
         return *pipeline;
     }
 };
@@ -67,7 +72,9 @@ Renderer::Renderer(RendererOptions options) : state_(std::make_shared<RendererSt
     state_->memory = MemoryAccount(state_->options.memory_limit);
 }
 
-const RendererOptions& Renderer::options() const { return state_->options; }
+const RendererOptions& Renderer::options() const {
+    return state_->options;
+}
 
 void Renderer::set_picture(int width, int height, Antialias antialias) {
     RendererOptions options = state_->options;
@@ -87,7 +94,8 @@ void Renderer::preprocess(const Scene& scene, const ProgressFn& progress) {
 UpdateReport Renderer::update(const Camera& camera) {
     RendererState& state = *state_;
     const std::shared_ptr<const PreparedScene> scene = state.latest_scene();
-    if (!scene) throw Error(ErrorKind::input, "nothing to draw yet; call preprocess(scene) first");
+    if (!scene)
+        throw Error(ErrorKind::input, "nothing to draw yet; call preprocess(scene) first");
     const Stopwatch watch;
     if (!state.pipeline) {
         state.pipeline = std::make_unique<Pipeline>(state.options, state.memory);
@@ -95,7 +103,8 @@ UpdateReport Renderer::update(const Camera& camera) {
     }
     const gl::CurrentScope current(state.pipeline->context());
     const RendererOptions& options = state.options;
-    const PictureRequest request{camera, options.width, options.height, options.antialias, options.terrain_error, {}};
+    const PictureRequest request{
+        camera, options.width, options.height, options.antialias, options.terrain_error, {}};
     const UpdateReport report = state.pipeline->update(scene, request);
     state.request = request;
     state.updated_scene = scene;
@@ -123,19 +132,22 @@ Frame Renderer::render(const Background& background) {
 }
 
 double Renderer::time_floor() {
-    if (!state_->pipeline) throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
+    if (!state_->pipeline)
+        throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
     const gl::CurrentScope current(state_->pipeline->context());
     return state_->pipeline->time_floor();
 }
 
 void FrameState::read_surface() {
-    if (!depth.empty()) return;
+    if (!depth.empty())
+        return;
     const gl::CurrentScope current(renderer->pipeline->context());
     renderer->pipeline_for(scene, request).draw_surface(world, depth);
 }
 
 void FrameState::read_ids() {
-    if (!ids.empty()) return;
+    if (!ids.empty())
+        return;
     const gl::CurrentScope current(renderer->pipeline->context());
     const std::vector<std::vector<uint32_t>> passes = renderer->pipeline_for(scene, request).draw_ids();
     const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
@@ -144,7 +156,8 @@ void FrameState::read_ids() {
     for (size_t pass = 0; pass < passes.size(); ++pass) {
         const Prepared& prepared = *scene->passes[pass].prepared;
         for (size_t i = 0; i < pixels; ++i) {
-            if (passes[pass][i] == 0) continue;
+            if (passes[pass][i] == 0)
+                continue;
             const FeatureReference reference = prepared.feature(passes[pass][i] - 1);
             ids[i] = scene->row_of(reference);
             layers[i] = static_cast<int32_t>(reference.layer);
@@ -152,10 +165,18 @@ void FrameState::read_ids() {
     }
 }
 
-int Frame::width() const { return state_->request.width; }
-int Frame::height() const { return state_->request.height; }
-const std::vector<uint8_t>& Frame::image() const { return state_->image; }
-const FrameStats& Frame::stats() const { return state_->stats; }
+int Frame::width() const {
+    return state_->request.width;
+}
+int Frame::height() const {
+    return state_->request.height;
+}
+const std::vector<uint8_t>& Frame::image() const {
+    return state_->image;
+}
+const FrameStats& Frame::stats() const {
+    return state_->stats;
+}
 
 const std::vector<int64_t>& Frame::ids() const {
     state_->read_ids();

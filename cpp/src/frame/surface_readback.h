@@ -8,10 +8,11 @@
 
 namespace decalgl {
 
-// `positions` and `surfaces`: four values a pixel as the G-buffer holds them, row 0 at the top. Fills `world` with x, y,
-// z a pixel (NaN for sky) and `depth` with planar eye depth (infinite for sky).
+// `positions` and `surfaces`: four values a pixel as the G-buffer holds them, row 0 at the top; distances
+// count from `base_depth` (view_block.h). Fills `world` with x, y, z a pixel (NaN for sky) and `depth` with
+// planar eye depth (infinite for sky).
 void unpack_surface(const std::vector<uint32_t>& positions, const std::vector<float>& surfaces,
-                    const PictureRequest& request, const PositionGrid& grid, std::vector<double>& world,
-                    std::vector<float>& depth);
+                    const PictureRequest& request, const PositionGrid& grid, double base_depth,
+                    std::vector<double>& world, std::vector<float>& depth);
 
 }  // namespace decalgl

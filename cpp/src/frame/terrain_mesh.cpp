@@ -32,7 +32,8 @@ std::vector<uint16_t> quad_elements(int quads) {
 
 int mip_levels(int width, int height) {
     int levels = 1;
-    for (int side = std::max(width, height); side > 1; side /= 2) ++levels;
+    for (int side = std::max(width, height); side > 1; side /= 2)
+        ++levels;
     return levels;
 }
 
@@ -44,14 +45,17 @@ TerrainMesh::TerrainMesh(const PreparedScene& scene, const MemoryAccount& memory
     const int rows = scene.terrain.rows();
     const int limit = gl::Context::require_current().info().max_texture_size;
     if (columns > limit || rows > limit)
-        throw Error(ErrorKind::memory, "the terrain has " + std::to_string(rows) + " x " + std::to_string(columns) +
-                                           " samples, but this driver holds at most " + std::to_string(limit) +
-                                           " a side; open a part of it, or resample it");
+        throw Error(ErrorKind::memory,
+                    "the terrain has " + std::to_string(rows) + " x " + std::to_string(columns) +
+                        " samples, but this driver holds at most " + std::to_string(limit) +
+                        " a side; open a part of it, or resample it");
     std::vector<float> heights(scene.terrain.heights());
     lowest_ = 0.0F;
     for (float& height : heights) {
-        if (std::isnan(height)) height = missing_height;
-        else lowest_ = std::min(lowest_, height);
+        if (std::isnan(height))
+            height = missing_height;
+        else
+            lowest_ = std::min(lowest_, height);
     }
     heights_ = gl::Texture2D::create(memory, "terrain: heights", GL_R32F, columns, rows);
     heights_.update(0, 0, 0, columns, rows, heights.data());
@@ -66,7 +70,8 @@ TerrainMesh::TerrainMesh(const PreparedScene& scene, const MemoryAccount& memory
         const auto count = static_cast<int>(relief_.ramp.size() / 3);
         std::vector<uint8_t> texels;
         for (size_t i = 0; i < relief_.ramp.size(); i += 3)
-            texels.insert(texels.end(), {relief_.ramp[i], relief_.ramp[i + 1], relief_.ramp[i + 2], uint8_t{255}});
+            texels.insert(texels.end(),
+                          {relief_.ramp[i], relief_.ramp[i + 1], relief_.ramp[i + 2], uint8_t{255}});
         ramp_ = gl::Texture2D::create(memory, "terrain: ramp", GL_RGBA8, count, 1);
         ramp_.update(0, 0, 0, count, 1, texels.data());
         ramp_.set_filter(GL_LINEAR, GL_LINEAR);
@@ -95,8 +100,10 @@ void TerrainMesh::set_look(gl::Program& program) const {
 
 uint64_t TerrainMesh::draw(const std::vector<VisibleTile>& tiles, gl::ProgramLibrary& programs) const {
     gl::Flags flags;
-    if (has_holes_) flags.insert("HOLES");
-    if (ramp_) flags.insert("RAMP");
+    if (has_holes_)
+        flags.insert("HOLES");
+    if (ramp_)
+        flags.insert("RAMP");
     gl::Program& program = programs.get("terrain", flags);
     program.use();
     set_look(program);

@@ -14,14 +14,14 @@
 namespace decalgl {
 
 class TerrainMesh {
-  public:
+public:
     // Throws Error(memory) where the terrain is larger than the driver's textures or the budget.
     TerrainMesh(const PreparedScene& scene, const MemoryAccount& memory);
 
     // Draws into the bound G-buffer; returns the number of triangles.
     uint64_t draw(const std::vector<VisibleTile>& tiles, gl::ProgramLibrary& programs) const;
 
-  private:
+private:
     void set_look(gl::Program& program) const;
 
     Relief relief_;

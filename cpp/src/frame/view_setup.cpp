@@ -22,13 +22,17 @@ struct SplitNumber {
 SplitNumber split(double value) {
     const double whole = std::floor(value);
     if (!(std::abs(whole) < 1e9))
-        throw Error(ErrorKind::input, "camera: the eye is too far from this terrain to draw it; move it closer");
+        throw Error(ErrorKind::input,
+                    "camera: the eye is too far from this terrain to draw it; move it closer");
     return {static_cast<int32_t>(whole), static_cast<float>(value - whole)};
 }
 
-double half_height_at_unit_distance(const Camera& camera) { return std::tan(0.5 * camera.fov * radians); }
+double half_height_at_unit_distance(const Camera& camera) {
+    return std::tan(0.5 * camera.fov * radians);
+}
 
-// The farthest of the terrain's box along the camera's axis, for the finite depth range of orthographic views.
+// The farthest of the terrain's box along the camera's axis, for the finite depth range of orthographic
+// views.
 double farthest_depth(const Camera& camera, const CameraBasis& basis, const Heightfield& terrain) {
     const Bounds bounds = terrain.bounds();
     float lowest = std::numeric_limits<float>::max();
@@ -39,7 +43,8 @@ double farthest_depth(const Camera& camera, const CameraBasis& basis, const Heig
     }
     double depth = 1.0;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 point(corner & 1 ? bounds.max_x : bounds.min_x, corner & 2 ? bounds.max_y : bounds.min_y,
+        const glm::dvec3 point(corner & 1 ? bounds.max_x : bounds.min_x,
+                               corner & 2 ? bounds.max_y : bounds.min_y,
                                static_cast<double>(corner & 4 ? highest : lowest));
         depth = std::max(depth, glm::dot(point - camera.eye, basis.forward));
     }
@@ -47,39 +52,48 @@ double farthest_depth(const Camera& camera, const CameraBasis& basis, const Heig
 }
 
 void set_row(mat4& matrix, int row, glm::dvec3 values, double last) {
-    for (int column = 0; column < 3; ++column) matrix[column][row] = static_cast<float>(values[column]);
+    for (int column = 0; column < 3; ++column)
+        matrix[column][row] = static_cast<float>(values[column]);
     matrix[3][row] = static_cast<float>(last);
 }
 
 // Reversed depth: 1 at the nearest distance, 0 at the farthest or at infinity.
 void set_projection(const Camera& camera, const CameraBasis& basis, double aspect, const Heightfield& terrain,
-                    ViewBlock& block) {
-    const double half = camera.orthographic() ? 0.5 * camera.view_height : half_height_at_unit_distance(camera);
-    set_row(block.clip_from_eye, 0, basis.right / (half * aspect), 0.0);
-    set_row(block.clip_from_eye, 1, basis.up / half, 0.0);
+                    double base_depth, ViewBlock& block) {
+    const double half =
+        camera.orthographic() ? 0.5 * camera.view_height : half_height_at_unit_distance(camera);
+    set_row(block.clip_from_base, 0, basis.right / (half * aspect), 0.0);
+    set_row(block.clip_from_base, 1, basis.up / half, 0.0);
     if (camera.orthographic()) {
-        set_row(block.clip_from_eye, 2, -basis.forward / farthest_depth(camera, basis, terrain), 1.0);
-        set_row(block.clip_from_eye, 3, {0.0, 0.0, 0.0}, 1.0);
-        block.eye_offset.w = 0.0F;
+        const double range = std::max(farthest_depth(camera, basis, terrain) - base_depth, 1.0);
+        set_row(block.clip_from_base, 2, -basis.forward / range, 1.0);
+        set_row(block.clip_from_base, 3, {0.0, 0.0, 0.0}, 1.0);
+        block.base_offset.w = static_cast<float>(-base_depth);
     } else {
-        set_row(block.clip_from_eye, 2, {0.0, 0.0, 0.0}, near_distance);
-        set_row(block.clip_from_eye, 3, basis.forward, 0.0);
-        block.eye_offset.w = static_cast<float>(near_distance);
+        set_row(block.clip_from_base, 2, {0.0, 0.0, 0.0}, near_distance);
+        set_row(block.clip_from_base, 3, basis.forward, base_depth);
+        block.base_offset.w = static_cast<float>(near_distance - base_depth);
     }
 }
 
-void set_rays(const Camera& camera, const CameraBasis& basis, int height, ViewBlock& block) {
-    const auto pixel_step = [&](glm::dvec3 axis, double half) { return vec4(axis * (2.0 * half / height), 0.0); };
-    block.forward = block.ray_direction = vec4(basis.forward, 0.0);
+void set_rays(const Camera& camera, const CameraBasis& basis, int height, double base_depth,
+              ViewBlock& block) {
+    const auto pixel_step = [&](glm::dvec3 axis, double half) {
+        return vec4(axis * (2.0 * half / height), 0.0);
+    };
+    block.forward = vec4(basis.forward, base_depth);
+    block.ray_direction = vec4(basis.forward, 0.0);
     const vec4 zero(0.0F);
     if (camera.orthographic()) {
         block.ray_direction_dx = block.ray_direction_dy = zero;
         block.ray_origin_dx = pixel_step(basis.right, 0.5 * camera.view_height);
         block.ray_origin_dy = pixel_step(basis.up, 0.5 * camera.view_height);
     } else {
-        block.ray_direction_dx = pixel_step(basis.right, half_height_at_unit_distance(camera));
-        block.ray_direction_dy = pixel_step(basis.up, half_height_at_unit_distance(camera));
-        block.ray_origin_dx = block.ray_origin_dy = zero;
+        const double half = half_height_at_unit_distance(camera);
+        block.ray_direction_dx = pixel_step(basis.right, half);
+        block.ray_direction_dy = pixel_step(basis.up, half);
+        block.ray_origin_dx = pixel_step(basis.right, half * base_depth);
+        block.ray_origin_dy = pixel_step(basis.up, half * base_depth);
     }
 }
 
@@ -98,6 +112,8 @@ struct Box {
         const glm::dvec3 nearest = glm::clamp(glm::dvec3(0.0), low, high);
         return glm::length(nearest);
     }
+
+    double farthest_distance() const { return glm::length(glm::max(glm::abs(low), glm::abs(high))); }
 };
 
 // Planes through the picture's edges: a point is seen when dot(normal, point) + offset >= 0 for all of them.
@@ -130,21 +146,37 @@ Box tile_box(const TerrainTile& tile, const Heightfield& terrain, const glm::dve
     const int32_t last_column = std::min(tile.column + tile_quads, terrain.columns() - 1);
     const int32_t last_row = std::min(tile.row + tile_quads, terrain.rows() - 1);
     return {glm::dvec3(terrain.x0() + tile.column * terrain.dx(), terrain.y0() - last_row * terrain.dy(),
-                       static_cast<double>(tile.lowest)) - eye,
+                       static_cast<double>(tile.lowest)) -
+                eye,
             glm::dvec3(terrain.x0() + last_column * terrain.dx(), terrain.y0() - tile.row * terrain.dy(),
-                       static_cast<double>(tile.highest)) - eye};
+                       static_cast<double>(tile.highest)) -
+                eye};
+}
+
+// The fewest metres that the picture's height shows of an offset in any direction, anywhere in the box. Away
+// from the picture's middle an offset shows larger: distances there are longer than depths, and the rays come
+// in at a slant.
+double metres_per_picture(const Camera& camera, const CameraBasis& basis, double aspect, const Box& box) {
+    if (camera.orthographic())
+        return camera.view_height;
+    const double half = half_height_at_unit_distance(camera);
+    const double corner = std::sqrt(1.0 + half * half * (1.0 + aspect * aspect));  // distance over depth
+    const double depth = std::max(-box.reach(-basis.forward), box.distance() / corner);
+    return 2.0 * half * depth / std::min(corner, box.farthest_distance() / depth);
 }
 
 int choose_level(const TerrainTile& tile, double pixels_per_metre, double terrain_error) {
     int level = 0;
     while (terrain_error > 0.0 && level + 1 < tile_levels &&
-           static_cast<double>(tile.error[static_cast<size_t>(level + 1)]) * pixels_per_metre <= terrain_error)
+           static_cast<double>(tile.error[static_cast<size_t>(level + 1)]) * pixels_per_metre <=
+               terrain_error)
         ++level;
     return level;
 }
 
-// Lowers levels until neighbours differ by one at most. At a seam the finer tile's vertices move along it by as much as
-// the levels differ; over a longer way the strip beside the seam would be off by far more than either tile.
+// Lowers levels until neighbours differ by one at most. At a seam the finer tile's vertices move along it by
+// as much as the levels differ; over a longer way the strip beside the seam would be off by far more than
+// either tile.
 void limit_steps(const TerrainTiles& tiles, std::vector<int>& levels) {
     const int32_t columns = tiles.columns;
     const auto lower = [&](int32_t tile, int32_t neighbour) {
@@ -153,60 +185,65 @@ void limit_steps(const TerrainTiles& tiles, std::vector<int>& levels) {
     };
     const auto count = static_cast<int32_t>(levels.size());
     for (int32_t i = 0; i < count; ++i) {
-        if (i % columns > 0) lower(i, i - 1);
-        if (i >= columns) lower(i, i - columns);
+        if (i % columns > 0)
+            lower(i, i - 1);
+        if (i >= columns)
+            lower(i, i - columns);
     }
     for (int32_t i = count - 1; i >= 0; --i) {
-        if (i % columns < columns - 1) lower(i, i + 1);
-        if (i < count - columns) lower(i, i + columns);
+        if (i % columns < columns - 1)
+            lower(i, i + 1);
+        if (i < count - columns)
+            lower(i, i + columns);
     }
 }
 
 }  // namespace
 
 ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,
-                          const PositionGrid& positions) {
+                          const PositionGrid& positions, double base_depth) {
     const CameraBasis basis = basis_of(camera);
+    const glm::dvec3 base = camera.eye + base_depth * basis.forward;
     ViewBlock block{};
-    set_projection(camera, basis, static_cast<double>(width) / height, terrain, block);
-    set_rays(camera, basis, height, block);
+    set_projection(camera, basis, static_cast<double>(width) / height, terrain, base_depth, block);
+    set_rays(camera, basis, height, base_depth, block);
 
-    const SplitNumber block_x = split((camera.eye.x - positions.origin_x) / positions.block_size);
-    const SplitNumber block_y = split((camera.eye.y - positions.origin_y) / positions.block_size);
-    block.eye_block = {block_x.whole, block_y.whole, 0, 0};
-    block.eye_offset.x = static_cast<float>(
-        camera.eye.x - (positions.origin_x + static_cast<double>(block_x.whole) * positions.block_size));
-    block.eye_offset.y = static_cast<float>(
-        camera.eye.y - (positions.origin_y + static_cast<double>(block_y.whole) * positions.block_size));
-    block.eye_offset.z = static_cast<float>(positions.block_size);
+    const SplitNumber block_x = split((base.x - positions.origin_x) / positions.block_size);
+    const SplitNumber block_y = split((base.y - positions.origin_y) / positions.block_size);
+    block.base_block = {block_x.whole, block_y.whole, 0, 0};
+    block.base_offset.x = static_cast<float>(
+        base.x - (positions.origin_x + static_cast<double>(block_x.whole) * positions.block_size));
+    block.base_offset.y = static_cast<float>(
+        base.y - (positions.origin_y + static_cast<double>(block_y.whole) * positions.block_size));
+    block.base_offset.z = static_cast<float>(positions.block_size);
 
-    const SplitNumber column = split((camera.eye.x - terrain.x0()) / terrain.dx());
-    const SplitNumber row = split((terrain.y0() - camera.eye.y) / terrain.dy());
-    const auto high = static_cast<float>(camera.eye.z);
-    block.eye_sample = {column.whole, row.whole, 0, 0};
-    block.eye_sample_fraction = {column.fraction, row.fraction, high,
-                                 static_cast<float>(camera.eye.z - static_cast<double>(high))};
-    block.spacing = {static_cast<float>(terrain.dx()), static_cast<float>(terrain.dy()), static_cast<float>(width),
-                     static_cast<float>(height)};
+    const SplitNumber column = split((base.x - terrain.x0()) / terrain.dx());
+    const SplitNumber row = split((terrain.y0() - base.y) / terrain.dy());
+    const auto high = static_cast<float>(base.z);
+    block.base_sample = {column.whole, row.whole, 0, 0};
+    block.base_sample_fraction = {column.fraction, row.fraction, high,
+                                  static_cast<float>(base.z - static_cast<double>(high))};
+    block.spacing = {static_cast<float>(terrain.dx()), static_cast<float>(terrain.dy()),
+                     static_cast<float>(width), static_cast<float>(height)};
     block.samples = {terrain.columns(), terrain.rows(), 0, 0};
     block.picture = {0, 0, width, height};
     return block;
 }
 
-std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain, const Camera& camera,
-                                      int width, int height, double terrain_error) {
+std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain,
+                                      const Camera& camera, int width, int height, double terrain_error) {
     const CameraBasis basis = basis_of(camera);
-    const Frustum frustum(camera, basis, static_cast<double>(width) / height);
+    const double aspect = static_cast<double>(width) / height;
+    const Frustum frustum(camera, basis, aspect);
     std::vector<int> levels(tiles.tiles.size());
     std::vector<bool> seen(tiles.tiles.size());
     for (size_t i = 0; i < levels.size(); ++i) {
         const TerrainTile& tile = tiles.tiles[i];
-        if (tile.lowest > tile.highest) continue;
+        if (tile.lowest > tile.highest)
+            continue;
         const Box box = tile_box(tile, terrain, camera.eye);
-        const double metres_per_picture = camera.orthographic()
-                                              ? camera.view_height
-                                              : 2.0 * half_height_at_unit_distance(camera) * box.distance();
-        levels[i] = choose_level(tile, height / std::max(metres_per_picture, 1e-9), terrain_error);
+        const double metres = std::max(metres_per_picture(camera, basis, aspect, box), 1e-9);
+        levels[i] = choose_level(tile, height / metres, terrain_error);
         seen[i] = frustum.sees(box);
     }
     limit_steps(tiles, levels);
@@ -216,14 +253,25 @@ std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfie
     };
     std::vector<VisibleTile> visible;
     for (size_t i = 0; i < levels.size(); ++i) {
-        if (!seen[i]) continue;
+        if (!seen[i])
+            continue;
         const auto column = static_cast<int32_t>(i) % tiles.columns;
         const auto row = static_cast<int32_t>(i) / tiles.columns;
-        visible.push_back({&tiles.tiles[i], levels[i],
+        visible.push_back({&tiles.tiles[i],
+                           levels[i],
                            {level_at(column - 1, row), level_at(column + 1, row), level_at(column, row - 1),
                             level_at(column, row + 1)}});
     }
     return visible;
+}
+
+double nearest_depth(const std::vector<VisibleTile>& tiles, const Heightfield& terrain,
+                     const Camera& camera) {
+    const CameraBasis basis = basis_of(camera);
+    double nearest = tiles.empty() ? 0.0 : std::numeric_limits<double>::max();
+    for (const VisibleTile& visible : tiles)
+        nearest = std::min(nearest, -tile_box(*visible.tile, terrain, camera.eye).reach(-basis.forward));
+    return std::max(0.0, static_cast<double>(static_cast<float>(0.999 * nearest)));
 }
 
 }  // namespace decalgl

@@ -9,10 +9,6 @@
 
 namespace decalgl {
 
-// Throws Error(input) where the eye is too far away to be held in block and sample numbers.
-ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,
-                          const PositionGrid& positions);
-
 struct VisibleTile {
     const TerrainTile* tile;
     int level;
@@ -21,7 +17,15 @@ struct VisibleTile {
 
 // The tiles in the view, each at the coarsest level that is off by no more than `terrain_error` pixels on the
 // screen, whatever was drawn before. `terrain_error` 0: every sample.
-std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain, const Camera& camera,
-                                      int width, int height, double terrain_error);
+std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain,
+                                      const Camera& camera, int width, int height, double terrain_error);
+
+// A depth, exact in float32, that nothing visible lies before; 0 where the eye is among the tiles.
+double nearest_depth(const std::vector<VisibleTile>& tiles, const Heightfield& terrain, const Camera& camera);
+
+// base_depth: of the point that positions are relative to, see view_block.h. Throws Error(input) where that
+// point is too far away to be held in block and sample numbers.
+ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,
+                          const PositionGrid& positions, double base_depth);
 
 }  // namespace decalgl

@@ -22,15 +22,18 @@ const std::map<std::string, MakeTechnique>& registry() {
 
 std::vector<std::string> technique_names() {
     std::vector<std::string> names;
-    for (const auto& entry : registry()) names.push_back(entry.first);
+    for (const auto& entry : registry())
+        names.push_back(entry.first);
     return names;
 }
 
 std::unique_ptr<Technique> make_technique(const std::string& name) {
     const auto found = registry().find(name);
-    if (found != registry().end()) return found->second();
+    if (found != registry().end())
+        return found->second();
     std::string known;
-    for (const std::string& each : technique_names()) known += (known.empty() ? "" : ", ") + each;
+    for (const std::string& each : technique_names())
+        known += (known.empty() ? "" : ", ") + each;
     throw Error(ErrorKind::input, "there is no technique '" + name + "'; choose one of: " + known);
 }
 

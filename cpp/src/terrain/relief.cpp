@@ -29,11 +29,14 @@ std::vector<uint8_t> illuminate(const Heightfield& field, const Relief& relief, 
             const int32_t north = std::max(row - 1, 0), south = std::min(row + 1, field.rows() - 1);
             for (int32_t column = 0; column < columns; ++column) {
                 const int32_t west = std::max(column - 1, 0), east = std::min(column + 1, columns - 1);
-                const double gx = slope(field.height(row, west), field.height(row, east), (east - west) * field.dx());
-                const double gy =
-                    slope(field.height(south, column), field.height(north, column), (south - north) * field.dy());
-                const double cosine = (light_z - gx * light_x - gy * light_y) / std::sqrt(gx * gx + gy * gy + 1.0);
-                cosines[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)] =
+                const double gx =
+                    slope(field.height(row, west), field.height(row, east), (east - west) * field.dx());
+                const double gy = slope(field.height(south, column), field.height(north, column),
+                                        (south - north) * field.dy());
+                const double cosine =
+                    (light_z - gx * light_x - gy * light_y) / std::sqrt(gx * gx + gy * gy + 1.0);
+                cosines[static_cast<size_t>(row) * static_cast<size_t>(columns) +
+                        static_cast<size_t>(column)] =
                     static_cast<uint8_t>(std::lrint(255.0 * std::clamp(cosine, 0.0, 1.0)));
             }
         }

@@ -63,9 +63,10 @@ TerrainTile measure_tile(const Heightfield& field, Corner first) {
         }
     }
     for (int level = 1; level < tile_levels; ++level)
-        tile.error[static_cast<size_t>(level)] =
-            has_hole ? infinite : std::max(tile.error[static_cast<size_t>(level - 1)],
-                                           level_error(field, first, last, 1 << level));
+        tile.error[static_cast<size_t>(level)] = has_hole
+                                                     ? infinite
+                                                     : std::max(tile.error[static_cast<size_t>(level - 1)],
+                                                                level_error(field, first, last, 1 << level));
     return tile;
 }
 

@@ -19,10 +19,12 @@ void require_offsets(Span<const int64_t> offsets, size_t total, const char* what
     const bool has_ends =
         !offsets.empty() && offsets[0] == 0 && offsets[offsets.size() - 1] == static_cast<int64_t>(total);
     bool rises = has_ends;
-    for (size_t i = 1; rises && i < offsets.size(); ++i) rises = offsets[i - 1] <= offsets[i];
+    for (size_t i = 1; rises && i < offsets.size(); ++i)
+        rises = offsets[i - 1] <= offsets[i];
     if (!rises)
-        throw Error(ErrorKind::input, "layer '" + layer + "': " + what + " must start at 0, never fall and end at " +
-                                          std::to_string(total) + "; rebuild the offsets from the part sizes");
+        throw Error(ErrorKind::input, "layer '" + layer + "': " + what +
+                                          " must start at 0, never fall and end at " + std::to_string(total) +
+                                          "; rebuild the offsets from the part sizes");
 }
 
 }  // namespace
@@ -36,7 +38,8 @@ Features Features::own(FeatureKind kind, std::vector<double> coordinates, std::v
     arrays->rows = std::move(rows);
     if (arrays->rows.empty() && !arrays->feature_offsets.empty()) {
         arrays->rows.resize(arrays->feature_offsets.size() - 1);
-        for (size_t row = 0; row < arrays->rows.size(); ++row) arrays->rows[row] = static_cast<int64_t>(row);
+        for (size_t row = 0; row < arrays->rows.size(); ++row)
+            arrays->rows[row] = static_cast<int64_t>(row);
     }
 
     Features features;

@@ -14,7 +14,8 @@ namespace {
 void validate_widths(const Layer& layer) {
     const size_t count = layer.features.feature_count();
     if (layer.features.kind == FeatureKind::polygons) {
-        if (!layer.widths.empty()) refuse(layer, "polygons have no width; leave it out");
+        if (!layer.widths.empty())
+            refuse(layer, "polygons have no width; leave it out");
         return;
     }
     if (layer.widths.size() != 1 && layer.widths.size() != count)
@@ -27,16 +28,20 @@ void validate_widths(const Layer& layer) {
 }
 
 void validate_draw_order(const Layer& layer) {
-    if (layer.draw_order.empty()) return;
+    if (layer.draw_order.empty())
+        return;
     const size_t count = layer.features.feature_count();
     std::vector<bool> seen(count, false);
     bool permutes = layer.draw_order.size() == count;
     for (size_t i = 0; permutes && i < count; ++i) {
         const int64_t feature = layer.draw_order[i];
-        permutes = feature >= 0 && feature < static_cast<int64_t>(count) && !seen[static_cast<size_t>(feature)];
-        if (permutes) seen[static_cast<size_t>(feature)] = true;
+        permutes =
+            feature >= 0 && feature < static_cast<int64_t>(count) && !seen[static_cast<size_t>(feature)];
+        if (permutes)
+            seen[static_cast<size_t>(feature)] = true;
     }
-    if (!permutes) refuse(layer, "the draw order must name each of its features once");
+    if (!permutes)
+        refuse(layer, "the draw order must name each of its features once");
 }
 
 }  // namespace

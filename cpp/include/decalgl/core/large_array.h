@@ -14,7 +14,8 @@ namespace decalgl {
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
 
-/// Leaves new elements as they are: zeroing memory that is about to be written is half the work of writing it.
+/// Leaves new elements as they are: zeroing memory that is about to be written is half the work of writing
+/// it.
 template <typename T>
 class LargeAllocator {
 public:

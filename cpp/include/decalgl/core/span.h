@@ -30,7 +30,8 @@ public:
     Span(std::vector<value_type>& values) noexcept : data_(values.data()), size_(values.size()) {}
 
     template <typename Allocator, typename U = T, typename = std::enable_if_t<std::is_const_v<U>>>
-    Span(const std::vector<value_type, Allocator>& values) noexcept : data_(values.data()), size_(values.size()) {}
+    Span(const std::vector<value_type, Allocator>& values) noexcept
+        : data_(values.data()), size_(values.size()) {}
 
     /// A span of values that may be written reads as one of values that may not.
     template <typename U = T, typename = std::enable_if_t<std::is_const_v<U>>>

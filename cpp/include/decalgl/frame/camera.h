@@ -16,9 +16,10 @@ struct Camera {
 
     static Camera look_at(glm::dvec3 eye, glm::dvec3 target, double fov = 45.0);
 
-    // Around a point: azimuth in degrees clockwise from north, elevation in degrees above the horizon, both of the
-    // direction from the target to the eye.
-    static Camera orbit(glm::dvec3 target, double distance, double azimuth, double elevation, double fov = 45.0);
+    // Around a point: azimuth in degrees clockwise from north, elevation in degrees above the horizon, both
+    // of the direction from the target to the eye.
+    static Camera orbit(glm::dvec3 target, double distance, double azimuth, double elevation,
+                        double fov = 45.0);
 
     // Straight down, north up, orthographic: the bounds fill a picture of this aspect (width / height).
     static Camera top_down(const Bounds& bounds, double eye_height, double aspect);

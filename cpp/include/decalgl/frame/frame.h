@@ -14,15 +14,16 @@ namespace decalgl {
 struct FrameState;
 
 struct FrameStats {
-    std::vector<TimedPass> passes;  // of the last picture, in order
+    std::vector<TimedPass> passes;      // of the last picture, in order
     std::vector<TimedPass> preprocess;  // its parts
     double preprocess_ms = 0.0;
     double update_ms = 0.0;
     double render_ms = 0.0;
     double readback_ms = 0.0;
-    std::vector<std::pair<std::string, uint64_t>> bytes;   // by owner, GL and CPU
-    std::vector<std::pair<std::string, double>> counts;    // triangles, features, segments, pieces, quantum_m, ...
-    std::vector<std::string> variants;                     // program variants compiled so far
+    std::vector<std::pair<std::string, uint64_t>> bytes;  // by owner, GL and CPU
+    std::vector<std::pair<std::string, double>>
+        counts;                         // triangles, features, segments, pieces, quantum_m, ...
+    std::vector<std::string> variants;  // program variants compiled so far
 };
 
 struct PickedFeature {
@@ -30,11 +31,11 @@ struct PickedFeature {
     int64_t row = 0;    // in the user's data
 };
 
-// Pixel (x, y) counts from the picture's upper left; arrays are row by row from the top. All but the image are made
-// when first asked for, on the thread that owns the renderer; they stay right after the renderer has gone on to other
-// views or scenes.
+// Pixel (x, y) counts from the picture's upper left; arrays are row by row from the top. All but the image
+// are made when first asked for, on the thread that owns the renderer; they stay right after the renderer has
+// gone on to other views or scenes.
 class Frame {
-  public:
+public:
     explicit Frame(std::shared_ptr<FrameState> state) : state_(std::move(state)) {}
 
     int width() const;
@@ -48,7 +49,7 @@ class Frame {
     std::vector<PickedFeature> pick(int x, int y) const;
     const FrameStats& stats() const;
 
-  private:
+private:
     std::shared_ptr<FrameState> state_;
 };
 

@@ -1,7 +1,7 @@
 // The renderer: preprocess a scene, update to a camera, render a frame.
 //
-// Threads: a renderer belongs to the thread that calls `update` first; `preprocess` alone may run on any thread, and
-// touches no GL. A failed call leaves the renderer as it was.
+// Threads: a renderer belongs to the thread that calls `update` first; `preprocess` alone may run on any
+// thread, and touches no GL. A failed call leaves the renderer as it was.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,16 @@ struct RendererOptions {
     int width = 1280;
     int height = 720;
     Antialias antialias = Antialias::coverage;
-    double terrain_error = 0.5;    // pixels on the screen that the terrain's level of detail may be off; 0: none
-    uint64_t memory_limit = 0;     // bytes for prepared data and GL objects together; 0: no limit
+    double terrain_error =
+        0.5;                    // pixels on the screen that the terrain's level of detail may be off; 0: none
+    uint64_t memory_limit = 0;  // bytes for prepared data and GL objects together; 0: no limit
     std::string backend = "auto";  // "egl", "osmesa"
     unsigned threads = 0;          // for preprocessing; 0: all cores
     int rectangle = 0;             // largest side, in pixels, drawn at once; 0: chosen
 };
 
 class Renderer {
-  public:
+public:
     // Throws Error(input) for options out of range. Opens no GL yet.
     explicit Renderer(RendererOptions options = {});
 
@@ -43,7 +44,7 @@ class Renderer {
     // Milliseconds of the pass that overlay passes are measured against, at the current picture.
     double time_floor();
 
-  private:
+private:
     std::shared_ptr<struct RendererState> state_;
 };
 

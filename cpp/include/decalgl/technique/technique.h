@@ -4,8 +4,9 @@
 //               any thread     plain        GL thread from here on
 //               no GL          arrays
 //
-// Threads: `preprocess` and `Prepared::query` may run on any thread and touch no GL; Prepared is never changed
-// once made, so several renderers may share it. Everything else is called on the thread that holds the context.
+// Threads: `preprocess` and `Prepared::query` may run on any thread and touch no GL; Prepared is never
+// changed once made, so several renderers may share it. Everything else is called on the thread that holds
+// the context.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +39,7 @@ struct TechniqueInput {
     uint32_t first_layer = 0;  // place of layers[0] in the scene
     Bounds bounds;             // of the terrain: nothing outside is ever seen
     PositionGrid positions;
-    unsigned threads = 0;      // 0: all cores
+    unsigned threads = 0;  // 0: all cores
     MemoryAccount memory;
 };
 
@@ -47,11 +48,11 @@ struct PreparedCounts {
     uint64_t segments = 0;  // edges and line segments in the input
     uint64_t pieces = 0;    // what they became
     uint64_t bytes = 0;
-    double quantum = 0.0;   // metres: how far a vertex may have moved
+    double quantum = 0.0;  // metres: how far a vertex may have moved
 };
 
 class Prepared {
-  public:
+public:
     virtual ~Prepared() = default;
     virtual PreparedCounts counts() const = 0;
     // The feature behind an id that draw_ids wrote, less one.
@@ -64,14 +65,14 @@ enum class Antialias { none, coverage };
 
 // Where the camera looks; the uniform block of every pass is bound already (shaders/shared/view_block.h).
 struct View {
-    int width = 0;   // of the whole picture, in pixels
+    int width = 0;  // of the whole picture, in pixels
     int height = 0;
     PositionGrid positions;
     Antialias antialias = Antialias::none;
 };
 
-// The surface seen at each pixel. position: block x, y and the bits of offset x, y (shaders/shared/position.glsl).
-// surface: terrain gradient, distance along the pixel's ray.
+// The surface seen at each pixel. position: block x, y and the bits of offset x, y
+// (shaders/shared/position.glsl). surface: terrain gradient, distance along the pixel's ray.
 struct GBufferView {
     const gl::Texture2D* position = nullptr;
     const gl::Texture2D* surface = nullptr;
@@ -83,10 +84,11 @@ struct UpdateReport {
 };
 
 class Technique {
-  public:
+public:
     virtual ~Technique() = default;
     virtual std::string name() const = 0;
-    virtual std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input, Progress& progress) const = 0;
+    virtual std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input,
+                                                       Progress& progress) const = 0;
     virtual void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) = 0;
     virtual UpdateReport update(const View& view) = 0;
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture.

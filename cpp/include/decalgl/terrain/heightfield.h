@@ -15,12 +15,13 @@
 namespace decalgl {
 
 class Heightfield {
-  public:
+public:
     Heightfield() = default;
 
-    // heights[row * columns + column] in metres, row 0 the northernmost, NaN where there is none. Sample (0, 0) lies at
-    // (x0, y0); columns go east by dx, rows south by dy, both positive. Throws Error(input).
-    Heightfield(std::vector<float> heights, int32_t rows, int32_t columns, double x0, double y0, double dx, double dy);
+    // heights[row * columns + column] in metres, row 0 the northernmost, NaN where there is none. Sample (0,
+    // 0) lies at (x0, y0); columns go east by dx, rows south by dy, both positive. Throws Error(input).
+    Heightfield(std::vector<float> heights, int32_t rows, int32_t columns, double x0, double y0, double dx,
+                double dy);
 
     // Level ground at one height.
     static Heightfield flat(const Bounds& bounds, float height);
@@ -36,11 +37,12 @@ class Heightfield {
     double dy() const { return dy_; }
     const std::vector<float>& heights() const { return *heights_; }
     float height(int32_t row, int32_t column) const {
-        return (*heights_)[static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column)];
+        return (*heights_)[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
+                           static_cast<size_t>(column)];
     }
     Bounds bounds() const;
 
-  private:
+private:
     std::shared_ptr<const std::vector<float>> heights_;
     int32_t rows_ = 0;
     int32_t columns_ = 0;

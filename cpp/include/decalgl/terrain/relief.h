@@ -11,14 +11,15 @@ namespace decalgl {
 
 struct Relief {
     std::array<uint8_t, 3> color{0xE9, 0xE5, 0xDC};
-    // Colours from `lowest` to `highest` metres, R, G, B bytes each, evenly spaced; empty: `color` everywhere.
+    // Colours from `lowest` to `highest` metres, R, G, B bytes each, evenly spaced; empty: `color`
+    // everywhere.
     std::vector<uint8_t> ramp;
     double lowest = 0.0;
     double highest = 1.0;
-    double azimuth = 315.0;   // degrees clockwise from north that the light comes from
-    double altitude = 45.0;   // degrees above the horizon
-    double strength = 0.6;    // 0: no hillshade. Level ground keeps its colour at any strength
-    double on_layers = 0.0;   // the share of the hillshade that layers take on too
+    double azimuth = 315.0;  // degrees clockwise from north that the light comes from
+    double altitude = 45.0;  // degrees above the horizon
+    double strength = 0.6;   // 0: no hillshade. Level ground keeps its colour at any strength
+    double on_layers = 0.0;  // the share of the hillshade that layers take on too
 };
 
 // Lambert's cosine for each sample, 0 to 255, from central differences.

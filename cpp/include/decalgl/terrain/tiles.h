@@ -1,7 +1,7 @@
 // Tiles of a heightfield and how far each of their levels of detail is off.
 //
-// Level l takes every 2^l-th sample. Triangulations of neighbouring levels nest, so the largest vertical distance
-// between a coarse surface and the full one is found at the samples.
+// Level l takes every 2^l-th sample. Triangulations of neighbouring levels nest, so the largest vertical
+// distance between a coarse surface and the full one is found at the samples.
 #pragma once
 
 #include <array>

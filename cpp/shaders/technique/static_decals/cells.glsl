@@ -22,7 +22,7 @@ struct CellPosition {
 };
 
 CellPosition locate(Position position) {
-    float block_size = eye_offset.z;
+    float block_size = base_offset.z;
     if (cell_shift >= 0) {
         ivec2 inside = position.block & ((1 << cell_shift) - 1);
         return CellPosition((position.block >> cell_shift) - first_cell,

@@ -1,12 +1,10 @@
 // From layers to a cell stream, on all cores and with the same bytes on any number of them:
 //
 //   slots     features in draw order, topmost first, cut into runs of about the same number of vertices
-//   records   each run on its own: pieces with their cell and slot
-//   buckets   records partitioned by bucket of cells, runs in order, so each cell's records stay in draw order
-//   stream    each bucket on its own: two passes that count and then write groups, with no sort at all
+//   records   each run on its own: pieces with their cell and slot, sorted into buckets of cells while in the cache
+//   stream    each bucket on its own: its records of all runs, in order, in two passes that count and then write
 //
-// Partitioning twice, first into buckets that fit the cache, is what makes this quick: a scatter straight into
-// cells misses the cache on every record.
+// A scatter straight into cells would miss the cache on every record.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,7 +20,10 @@
 namespace decalgl {
 namespace {
 
-constexpr size_t vertices_per_run = 1 << 16;
+// Few enough runs that a bucket gathers from few places, small enough that sorting one stays near the cache.
+constexpr size_t wanted_runs = 48;
+constexpr size_t smallest_run = 1 << 13;
+constexpr size_t largest_run = 1 << 18;
 
 struct Run {
     size_t first_slot;
@@ -65,6 +66,9 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
 }
 
 std::vector<Run> cut_into_runs(const TechniqueInput& input, const PreparedDecals& decals) {
+    size_t vertices = 0;
+    for (const Layer& layer : input.layers) vertices += layer.features.vertex_count();
+    const size_t vertices_per_run = std::clamp(vertices / wanted_runs, smallest_run, largest_run);
     std::vector<Run> runs;
     Run run{0, 0, 0};
     for (size_t slot = 0; slot < decals.slots.size(); ++slot) {
@@ -104,6 +108,7 @@ CellRecords make_records(const TechniqueInput& input, const PreparedDecals& deca
                           [&](Span<const double> line) { add_line_pieces(line, half_width, records); });
         }
     }
+    records.sort_into_buckets();
     return records;
 }
 
@@ -115,53 +120,18 @@ std::vector<CellRecords> make_all_records(const TechniqueInput& input, const Pre
         [&](size_t begin, size_t end) {
             for (size_t run = begin; run < end; ++run) all[run] = make_records(input, decals, runs[run]);
         },
-        [&](double share) { progress.report(0.6 * share); });
+        [&](double share) { progress.report(0.7 * share); });
     return all;
 }
 
-struct Buckets {
-    LargeArray<CellRecord> records;
-    std::vector<size_t> starts;  // bucket_count() + 1
-};
-
-// Releases each run's records once they are copied.
-Buckets partition(const TechniqueInput& input, const CellGrid& grid, std::vector<CellRecords>& runs) {
-    const uint32_t bucket_count = grid.bucket_count();
-    Buckets buckets;
-    buckets.starts.resize(bucket_count + 1);
-    std::vector<size_t> cursors(runs.size() * bucket_count);
-    size_t total = 0;
-    for (uint32_t bucket = 0; bucket < bucket_count; ++bucket) {
-        buckets.starts[bucket] = total;
-        for (size_t run = 0; run < runs.size(); ++run) {
-            cursors[run * bucket_count + bucket] = total;
-            total += runs[run].bucket_sizes()[bucket];
-        }
-    }
-    buckets.starts[bucket_count] = total;
-    buckets.records.resize(total);
-    parallel_for(runs.size(), 1, input.threads, [&](size_t begin, size_t end) {
-        for (size_t run = begin; run < end; ++run) {
-            size_t* cursor = &cursors[run * bucket_count];
-            for (const CellRecord& record : runs[run].records())
-                buckets.records[cursor[record.cell / BUCKET_CELLS]++] = record;
-            runs[run].release();
-        }
-    });
-    return buckets;
-}
-
-void write_stream(const TechniqueInput& input, const Buckets& buckets, PreparedDecals& decals, Progress& progress) {
+void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& runs, PreparedDecals& decals,
+                  Progress& progress) {
     const uint32_t bucket_count = decals.grid.bucket_count();
-    const auto records_of = [&](size_t bucket) {
-        return Span<const CellRecord>(buckets.records.data() + buckets.starts[bucket],
-                                      buckets.starts[bucket + 1] - buckets.starts[bucket]);
-    };
     decals.cell_starts.resize(size_t{bucket_count} * BUCKET_CELLS + 1);
     std::vector<uint64_t> sizes(bucket_count);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
         for (size_t bucket = begin; bucket < end; ++bucket)
-            sizes[bucket] = count_bucket_texels(records_of(bucket), decals.styles,
+            sizes[bucket] = count_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles,
                                                 &decals.cell_starts[bucket * BUCKET_CELLS]);
     });
     uint64_t total = 0;
@@ -179,7 +149,7 @@ void write_stream(const TechniqueInput& input, const Buckets& buckets, PreparedD
     progress.report(0.8);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
         for (size_t bucket = begin; bucket < end; ++bucket)
-            write_bucket_texels(records_of(bucket), decals.styles, static_cast<uint32_t>(sizes[bucket]),
+            write_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles, static_cast<uint32_t>(sizes[bucket]),
                                 &decals.cell_starts[bucket * BUCKET_CELLS], decals.texels.data());
     });
     decals.cell_starts.back() = static_cast<uint32_t>(total);
@@ -197,11 +167,9 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
 
     std::vector<CellRecords> records = make_all_records(input, *decals, runs, progress);
     size_t record_count = 0;
-    for (const CellRecords& run : records) record_count += run.records().size();
-    const MemoryCharge working(input.memory, "static: working memory", record_count * sizeof(CellRecord) * 2);
-    const Buckets buckets = partition(input, decals->grid, records);
-    progress.report(0.7);
-    write_stream(input, buckets, *decals, progress);
+    for (const CellRecords& run : records) record_count += run.size();
+    const MemoryCharge working(input.memory, "static: working memory", record_count * sizeof(CellRecord));
+    write_stream(input, records, *decals, progress);
     decals->pieces = record_count;
     progress.report(1.0);
     return decals;

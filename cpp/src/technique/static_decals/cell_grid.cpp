@@ -5,8 +5,8 @@
 namespace decalgl {
 
 CellGrid CellGrid::over(const Bounds& bounds, const PositionGrid& positions, int32_t resolution) {
-    const double extent = std::max({bounds.max_x - bounds.min_x, bounds.max_y - bounds.min_y,
-                                    positions.span / 1024.0});
+    const double extent =
+        std::max({bounds.max_x - bounds.min_x, bounds.max_y - bounds.min_y, positions.span / 1024.0});
     CellGrid grid;
     grid.positions = positions;
     grid.cell_size = std::exp2(std::ceil(std::log2(extent / resolution)));

@@ -1,7 +1,7 @@
 // The regular grid of cells over the terrain, and the lattice on which all vertices lie.
 //
-// Based on the decal grid of Zechmeister 2020, section 3.2.1. Ours differs in size (a power of two in metres, so
-// that cells, lattice and the scene's position grid nest) and in what a cell holds (cell_stream.h).
+// Based on the decal grid of Zechmeister 2020, section 3.2.1. Ours differs in size (a power of two in metres,
+// so that cells, lattice and the scene's position grid nest) and in what a cell holds (cell_stream.h).
 #pragma once
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace decalgl {
 
 struct CellGrid {
     PositionGrid positions;
-    double cell_size = 1.0;  // metres, a power of two
-    double quantum = 1.0;    // metres, cell_size / CELL_QUANTA
+    double cell_size = 1.0;    // metres, a power of two
+    double quantum = 1.0;      // metres, cell_size / CELL_QUANTA
     int64_t first_cell_x = 0;  // of cell (0, 0), counted from the position grid's origin
     int64_t first_cell_y = 0;
     int32_t columns = 0;
@@ -45,11 +45,13 @@ struct LatticePoint {
     int64_t y = 0;
 };
 
-inline bool operator==(LatticePoint a, LatticePoint b) { return a.x == b.x && a.y == b.y; }
+inline bool operator==(LatticePoint a, LatticePoint b) {
+    return a.x == b.x && a.y == b.y;
+}
 
 // From map positions to the lattice, counted from the grid's lower left corner.
 class Lattice {
-  public:
+public:
     explicit Lattice(const CellGrid& grid)
         : left_(grid.left()), bottom_(grid.bottom()), quanta_per_metre_(1.0 / grid.quantum) {}
 
@@ -57,7 +59,7 @@ class Lattice {
         return {std::lrint((x - left_) * quanta_per_metre_), std::lrint((y - bottom_) * quanta_per_metre_)};
     }
 
-  private:
+private:
     double left_;
     double bottom_;
     double quanta_per_metre_;  // a power of two: multiplying by it is exact

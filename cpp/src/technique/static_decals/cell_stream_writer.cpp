@@ -34,7 +34,8 @@ void walk(Span<const CellRecord> records, const std::vector<DecalStyle>& styles,
                 cell.covered_by_line = false;
                 on_group(cell, record.slot, is_line);
             }
-            if (cell.covered_by_line) continue;
+            if (cell.covered_by_line)
+                continue;
             if (!is_marker) {
                 on_piece(cell, record);
                 ++cell.end;
@@ -48,11 +49,12 @@ void walk(Span<const CellRecord> records, const std::vector<DecalStyle>& styles,
 
 }  // namespace
 
-uint64_t count_bucket_texels(Span<const CellRecord> records, const std::vector<DecalStyle>& styles,
-                             uint32_t* cell_texels) {
+uint64_t count_bucket_texels(const std::vector<CellRecords>& runs, uint32_t bucket,
+                             const std::vector<DecalStyle>& styles, uint32_t* cell_texels) {
     std::array<OpenCell, BUCKET_CELLS> cells;
     const auto nothing = [](auto&&...) {};
-    walk(records, styles, cells, nothing, nothing, nothing);
+    for (const CellRecords& run : runs)
+        walk(run.bucket(bucket), styles, cells, nothing, nothing, nothing);
     uint64_t sum = 0;
     for (size_t i = 0; i < BUCKET_CELLS; ++i) {
         cell_texels[i] = cells[i].end;
@@ -61,8 +63,9 @@ uint64_t count_bucket_texels(Span<const CellRecord> records, const std::vector<D
     return sum;
 }
 
-void write_bucket_texels(Span<const CellRecord> records, const std::vector<DecalStyle>& styles, uint32_t start,
-                         uint32_t* cell_starts, CellTexel* texels) {
+void write_bucket_texels(const std::vector<CellRecords>& runs, uint32_t bucket,
+                         const std::vector<DecalStyle>& styles, uint32_t start, uint32_t* cell_starts,
+                         CellTexel* texels) {
     std::array<OpenCell, BUCKET_CELLS> cells;
     for (size_t i = 0; i < BUCKET_CELLS; ++i) {
         const uint32_t count = cell_starts[i];
@@ -70,18 +73,18 @@ void write_bucket_texels(Span<const CellRecord> records, const std::vector<Decal
         cells[i].end = start;
         start += count;
     }
-    walk(
-        records, styles, cells,
-        [&](const OpenCell& cell, uint32_t slot, bool is_line) {
-            const auto half_width = static_cast<double>(styles[slot].half_width);
-            const uint32_t scale = is_line ? static_cast<uint32_t>(line_scale(half_width)) : 0;
-            texels[cell.header] = {HEADER_MARK | scale << GROUP_SCALE_SHIFT | (is_line ? GROUP_LINE : 0), slot};
-        },
-        [&](const OpenCell& cell, const CellRecord& record) {
-            texels[cell.end] = {record.x0 | static_cast<uint32_t>(record.y0) << 16,
-                                record.x1 | static_cast<uint32_t>(record.y1) << 16};
-        },
-        [&](const OpenCell& cell) { texels[cell.header].x |= GROUP_COVERS; });
+    const auto on_group = [&](const OpenCell& cell, uint32_t slot, bool is_line) {
+        const auto half_width = static_cast<double>(styles[slot].half_width);
+        const uint32_t scale = is_line ? static_cast<uint32_t>(line_scale(half_width)) : 0;
+        texels[cell.header] = {HEADER_MARK | scale << GROUP_SCALE_SHIFT | (is_line ? GROUP_LINE : 0), slot};
+    };
+    const auto on_piece = [&](const OpenCell& cell, const CellRecord& record) {
+        texels[cell.end] = {record.x0 | static_cast<uint32_t>(record.y0) << 16,
+                            record.x1 | static_cast<uint32_t>(record.y1) << 16};
+    };
+    const auto on_covers = [&](const OpenCell& cell) { texels[cell.header].x |= GROUP_COVERS; };
+    for (const CellRecords& run : runs)
+        walk(run.bucket(bucket), styles, cells, on_group, on_piece, on_covers);
 }
 
 }  // namespace decalgl

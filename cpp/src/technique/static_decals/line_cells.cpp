@@ -30,7 +30,8 @@ struct Interval {
 
     void clip(double start, double step, double low, double high) {
         if (step == 0.0) {
-            if (start < low || start > high) last = -1.0;
+            if (start < low || start > high)
+                last = -1.0;
             return;
         }
         const double t0 = (low - start) / step;
@@ -71,7 +72,8 @@ void add_clipped_piece(LatticePoint a, LatticePoint b, const Stroke& stroke, int
     Interval kept;
     kept.clip(ax, bx - ax, 0.0, COORDINATE_MAX);
     kept.clip(ay, by - ay, 0.0, COORDINATE_MAX);
-    if (kept.first > kept.last) return;
+    if (kept.first > kept.last)
+        return;
     const auto at = [](double start, double end, double t) {
         const double value = t <= 0.0 ? start : t >= 1.0 ? end : start + t * (end - start);
         return static_cast<uint16_t>(std::lrint(std::clamp(value, 0.0, double{COORDINATE_MAX})));
@@ -84,14 +86,17 @@ void add_piece(LatticePoint a, LatticePoint b, const Stroke& stroke, int32_t col
                CellRecords& records) {
     const bool covers = stroke.can_cover_cells() && covers_cell(a, b, stroke.half_width, column, row);
     if (stroke.wanted == Wanted::covered_cells) {
-        if (covers) records.add_covered(column, row, row);
+        if (covers)
+            records.add_covered(column, row, row);
         return;
     }
-    if (covers) return;
+    if (covers)
+        return;
     const int64_t left = int64_t{column} * CELL_QUANTA - COORDINATE_BIAS;
     const int64_t bottom = int64_t{row} * CELL_QUANTA - COORDINATE_BIAS;
     const int64_t x0 = a.x - left, y0 = a.y - bottom, x1 = b.x - left, y1 = b.y - bottom;
-    const bool fits = stroke.scale == 0 && ((x0 | y0 | x1 | y1) & ~int64_t{0xFFFF}) == 0 && x0 != covers_marker;
+    const bool fits =
+        stroke.scale == 0 && ((x0 | y0 | x1 | y1) & ~int64_t{0xFFFF}) == 0 && x0 != covers_marker;
     if (fits)
         records.add_piece(records.grid().cell_index(column, row), static_cast<uint16_t>(x0),
                           static_cast<uint16_t>(y0), static_cast<uint16_t>(x1), static_cast<uint16_t>(y1));
@@ -117,7 +122,8 @@ void add_segment(LatticePoint a, LatticePoint b, const Stroke& stroke, CellRecor
     const CellSpan rows(std::min(a.y, b.y) - reach, std::max(a.y, b.y) + reach, grid.rows);
     if (columns.first == columns.last || rows.first == rows.last) {
         for (int32_t column = columns.first; column <= columns.last; ++column)
-            for (int32_t row = rows.first; row <= rows.last; ++row) add_piece(a, b, stroke, column, row, records);
+            for (int32_t row = rows.first; row <= rows.last; ++row)
+                add_piece(a, b, stroke, column, row, records);
         return;
     }
     const auto ax = static_cast<double>(a.x), ay = static_cast<double>(a.y);
@@ -126,30 +132,35 @@ void add_segment(LatticePoint a, LatticePoint b, const Stroke& stroke, CellRecor
         Interval inside;
         inside.clip(ax, dx, static_cast<double>(int64_t{column} * CELL_QUANTA - reach),
                     static_cast<double>(int64_t{column + 1} * CELL_QUANTA + reach));
-        if (inside.first > inside.last) continue;
+        if (inside.first > inside.last)
+            continue;
         const auto y0 = static_cast<int64_t>(ay + inside.first * dy);
         const auto y1 = static_cast<int64_t>(ay + inside.last * dy);
         // One quantum more, for the rounding towards zero.
         const CellSpan here(std::min(y0, y1) - reach - 1, std::max(y0, y1) + reach + 1, grid.rows);
-        for (int32_t row = here.first; row <= here.last; ++row) add_piece(a, b, stroke, column, row, records);
+        for (int32_t row = here.first; row <= here.last; ++row)
+            add_piece(a, b, stroke, column, row, records);
     }
 }
 
 void add_part(Span<const double> coordinates, const Stroke& stroke, CellRecords& records) {
     const Lattice lattice(records.grid());
     const size_t count = coordinates.size() / 2;
-    if (count == 0) return;
+    if (count == 0)
+        return;
     LatticePoint previous = lattice.nearest(coordinates[0], coordinates[1]);
     bool drawn = false;
     for (size_t i = 1; i < count; ++i) {
         const LatticePoint next = lattice.nearest(coordinates[2 * i], coordinates[2 * i + 1]);
-        if (next == previous) continue;
+        if (next == previous)
+            continue;
         add_segment(previous, next, stroke, records);
         previous = next;
         drawn = true;
     }
     // A line shorter than a quantum is still a dot.
-    if (!drawn) add_segment(previous, previous, stroke, records);
+    if (!drawn)
+        add_segment(previous, previous, stroke, records);
 }
 
 }  // namespace
@@ -163,7 +174,8 @@ int line_scale(double half_width_in_quanta) {
 
 void mark_covered_cells(Span<const double> coordinates, double half_width, CellRecords& records) {
     const Stroke stroke(half_width, Wanted::covered_cells);
-    if (stroke.can_cover_cells()) add_part(coordinates, stroke, records);
+    if (stroke.can_cover_cells())
+        add_part(coordinates, stroke, records);
 }
 
 void add_line_pieces(Span<const double> coordinates, double half_width, CellRecords& records) {

@@ -16,7 +16,9 @@ struct CellTexel {
     uint32_t y;
 };
 
-inline bool is_header(CellTexel texel) { return (texel.x & 0xFFFFU) == HEADER_MARK; }
+inline bool is_header(CellTexel texel) {
+    return (texel.x & 0xFFFFU) == HEADER_MARK;
+}
 
 // As the shaders read it, one a slot.
 struct DecalStyle {
@@ -26,7 +28,7 @@ struct DecalStyle {
 static_assert(sizeof(DecalStyle) == 8, "read as one RG32UI texel");
 
 class PreparedDecals : public Prepared {
-  public:
+public:
     PreparedCounts counts() const override;
     FeatureReference feature(uint32_t id) const override { return slots[id]; }
     std::vector<FeatureReference> query(double x, double y) const override;

@@ -1,4 +1,5 @@
-// What lies at a map position: the walk of static_decals.frag.glsl on the CPU, in double precision and to the end.
+// What lies at a map position: the walk of static_decals.frag.glsl on the CPU, in double precision and to the
+// end.
 #include <cmath>
 
 #include "technique/static_decals/prepared_decals.h"
@@ -39,7 +40,8 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
     std::vector<FeatureReference> found;
     const double cell_x = (x - grid.left()) / grid.cell_size;
     const double cell_y = (y - grid.bottom()) / grid.cell_size;
-    if (!(cell_x >= 0.0 && cell_x < grid.columns && cell_y >= 0.0 && cell_y < grid.rows)) return found;
+    if (!(cell_x >= 0.0 && cell_x < grid.columns && cell_y >= 0.0 && cell_y < grid.rows))
+        return found;
     const auto column = static_cast<int32_t>(cell_x);
     const auto row = static_cast<int32_t>(cell_y);
     const double local_x = (cell_x - column) * CELL_QUANTA;
@@ -60,7 +62,8 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
             else
                 covered ^= piece.crosses_walk(px, py);
         }
-        if (covered) found.push_back(slots[header.y]);
+        if (covered)
+            found.push_back(slots[header.y]);
     }
     return found;
 }

@@ -33,18 +33,21 @@ double estimate_references(const Layer& layer, double cell_size) {
 
 int32_t choose_resolution(const TechniqueInput& input) {
     double segments = 0.0;
-    for (const Layer& layer : input.layers) segments += static_cast<double>(layer.features.vertex_count());
+    for (const Layer& layer : input.layers)
+        segments += static_cast<double>(layer.features.vertex_count());
     const double wanted = std::exp2(std::round(std::log2(std::sqrt(std::max(segments, 1.0) / 1.2))));
     auto resolution = std::clamp(static_cast<int32_t>(wanted), coarsest_wanted, finest);
 
-    const double extent = std::max(input.bounds.max_x - input.bounds.min_x, input.bounds.max_y - input.bounds.min_y);
+    const double extent =
+        std::max(input.bounds.max_x - input.bounds.min_x, input.bounds.max_y - input.bounds.min_y);
     const double allowed = references_per_segment * segments + 65536.0;
     for (; resolution > coarsest; resolution /= 2) {
         double references = 0.0;
         for (const Layer& layer : input.layers)
             if (layer.features.kind == FeatureKind::lines)
                 references += estimate_references(layer, extent / resolution);
-        if (references <= allowed) break;
+        if (references <= allowed)
+            break;
     }
     return resolution;
 }

@@ -17,7 +17,9 @@ int64_t x_at(LatticePoint a, LatticePoint b, int64_t y) {
     return a.x + std::lrint(t * static_cast<double>(b.x - a.x));
 }
 
-int64_t border(int64_t cell) { return cell * CELL_QUANTA; }
+int64_t border(int64_t cell) {
+    return cell * CELL_QUANTA;
+}
 
 int64_t clamp_cell(int64_t quanta, int64_t low, int64_t high) {
     return std::clamp(quanta >> CELL_BITS, low, high);
@@ -32,7 +34,8 @@ uint16_t local(int64_t quanta, int64_t cell) {
 void RingCells::add_ring(Span<const double> coordinates) {
     const Lattice lattice(records_->grid());
     const size_t count = coordinates.size() / 2;
-    if (count < 3) return;
+    if (count < 3)
+        return;
     LatticePoint previous = lattice.nearest(coordinates[2 * count - 2], coordinates[2 * count - 1]);
     for (size_t i = 0; i < count; ++i) {
         const LatticePoint next = lattice.nearest(coordinates[2 * i], coordinates[2 * i + 1]);
@@ -48,11 +51,13 @@ void RingCells::add_ring(Span<const double> coordinates) {
 // a is left of b, or below it.
 void RingCells::add_edge(LatticePoint a, LatticePoint b) {
     const CellGrid& grid = records_->grid();
-    if (std::min(a.y, b.y) >= border(grid.rows) || b.x <= 0 || a.x >= border(grid.columns)) return;
+    if (std::min(a.y, b.y) >= border(grid.rows) || b.x <= 0 || a.x >= border(grid.columns))
+        return;
     const int64_t first = clamp_cell(a.x, 0, grid.columns - 1);
     const int64_t last = std::max(first, clamp_cell(b.x - 1, 0, grid.columns - 1));
     LatticePoint start = a;
-    if (a.x < border(first)) start = {border(first), y_at(a, b, border(first))};
+    if (a.x < border(first))
+        start = {border(first), y_at(a, b, border(first))};
     for (int64_t column = first; column <= last; ++column) {
         const int64_t right = border(column + 1);
         const LatticePoint end = b.x <= right ? b : LatticePoint{right, y_at(a, b, right)};
@@ -61,21 +66,25 @@ void RingCells::add_edge(LatticePoint a, LatticePoint b) {
     }
 }
 
-// A piece between the borders of one column, a left of b or straight below it: cut into rows from the bottom up.
+// A piece between the borders of one column, a left of b or straight below it: cut into rows from the bottom
+// up.
 void RingCells::add_column_piece(int32_t column, LatticePoint a, LatticePoint b) {
     const CellGrid& grid = records_->grid();
     const LatticePoint low = a.y <= b.y ? a : b;
     const LatticePoint high = a.y <= b.y ? b : a;
     const int64_t left = border(column);
-    if (low.y >= border(grid.rows)) return;
+    if (low.y >= border(grid.rows))
+        return;
     if (high.y < 0) {
-        if ((low.x == left) != (high.x == left)) add_crossing(column, -1);
+        if ((low.x == left) != (high.x == left))
+            add_crossing(column, -1);
         return;
     }
     LatticePoint start = low;
     if (low.y < 0) {
         start = {x_at(a, b, 0), 0};
-        if ((low.x == left) != (start.x == left)) add_crossing(column, -1);
+        if ((low.x == left) != (start.x == left))
+            add_crossing(column, -1);
     }
     const int64_t first = start.y >> CELL_BITS;
     const int64_t last = std::max(first, clamp_cell(high.y - 1, 0, grid.rows - 1));
@@ -91,10 +100,13 @@ void RingCells::add_cell_piece(int32_t column, int32_t row, LatticePoint low, La
     const int64_t left = border(column);
     const int64_t right = border(column + 1);
     // A piece on a border crosses neither the walk up the left border nor a row: it decides nothing.
-    if (low.x == high.x && (low.x == left || low.x == right)) return;
+    if (low.x == high.x && (low.x == left || low.x == right))
+        return;
     const bool leaves_border = (low.x == left) != (high.x == left);
-    if (leaves_border) add_crossing(column, row);
-    if (low.y == high.y && !leaves_border) return;
+    if (leaves_border)
+        add_crossing(column, row);
+    if (low.y == high.y && !leaves_border)
+        return;
     records_->add_piece(records_->grid().cell_index(column, row), local(low.x, column), local(low.y, row),
                         local(high.x, column), local(high.y, row));
 }
@@ -113,7 +125,8 @@ void RingCells::finish_feature() {
         const int32_t first = row_of(i) + 1;
         const bool has_end = i + 1 < crossings_.size() && crossings_[i + 1] >> 16 == column;
         const int32_t last = has_end ? row_of(i + 1) : rows - 1;
-        if (first <= last) records_->add_covered(static_cast<int32_t>(column), first, last);
+        if (first <= last)
+            records_->add_covered(static_cast<int32_t>(column), first, last);
         i += has_end ? 2 : 1;
     }
     crossings_.clear();

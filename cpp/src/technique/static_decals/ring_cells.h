@@ -1,19 +1,18 @@
 // Rings into cells: edges are cut at cell borders, and cells without a piece are known whole.
 //
-// What is inside is decided from a cell's lower left corner: walk up the left border to the pixel's height, then
-// right to the pixel, and count what is crossed.
+// What is inside is decided from a cell's lower left corner: walk up the left border to the pixel's height,
+// then right to the pixel, and count what is crossed.
 //
-//        +---------------------+        crossings on the left border: pieces that start there, below the pixel
-//        |        __/          |        crossings of the row: pieces left of the pixel
-//        o------/---> pixel    |
-//        |    _/               |
+//        +---------------------+        crossings on the left border: pieces that start there, below the
+//        pixel |        __/          |        crossings of the row: pieces left of the pixel o------/--->
+//        pixel    | |    _/               |
 //        +__/------------------+
 //      corner
 //
-// Every edge is cut in its canonical direction (left to right), the cuts are rounded onto the lattice, and both
-// cells at a border use the same cut. So two polygons that share a border have the same pieces, and a point
-// belongs to exactly one of them. A corner's own state follows from the crossings of its column below it, which
-// is what `covers` spans carry. The border between cells belongs to the right and upper one.
+// Every edge is cut in its canonical direction (left to right), the cuts are rounded onto the lattice, and
+// both cells at a border use the same cut. So two polygons that share a border have the same pieces, and a
+// point belongs to exactly one of them. A corner's own state follows from the crossings of its column below
+// it, which is what `covers` spans carry. The border between cells belongs to the right and upper one.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +24,7 @@
 namespace decalgl {
 
 class RingCells {
-  public:
+public:
     explicit RingCells(CellRecords& records) : records_(&records) {}
 
     // Adds one ring of the current feature, closing it if it is open. `coordinates`: x, y of its vertices.
@@ -34,7 +33,7 @@ class RingCells {
     // Ends the feature: marks the cells whose lower left corner is inside.
     void finish_feature();
 
-  private:
+private:
     void add_edge(LatticePoint a, LatticePoint b);
     void add_column_piece(int32_t column, LatticePoint a, LatticePoint b);
     void add_cell_piece(int32_t column, int32_t row, LatticePoint a, LatticePoint b);

@@ -8,16 +8,17 @@
 
 namespace decalgl {
 
-std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& input, Progress& progress) const {
+std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& input,
+                                                         Progress& progress) const {
     return build_decals(input, progress);
 }
 
 void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
     cell_starts_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI,
-                                            Span<const uint32_t>(prepared_->cell_starts));
+                                           Span<const uint32_t>(prepared_->cell_starts));
     cell_texels_ = gl::TextureBuffer::from(memory, "static: pieces", GL_RG32UI,
-                                            Span<const CellTexel>(prepared_->texels));
+                                           Span<const CellTexel>(prepared_->texels));
     styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, prepared_->styles);
     no_vertices_ = gl::VertexArray::create();
 }
@@ -29,8 +30,10 @@ UpdateReport StaticDecals::update(const View&) {
 
 void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     gl::Flags flags;
-    if (prepared_->has_translucency) flags.insert("TRANSLUCENT");
-    if (view.antialias == Antialias::coverage) flags.insert("COVERAGE");
+    if (prepared_->has_translucency)
+        flags.insert("TRANSLUCENT");
+    if (view.antialias == Antialias::coverage)
+        flags.insert("COVERAGE");
     draw_full_screen(std::move(flags), view, gbuffer, programs);
 }
 
@@ -41,9 +44,12 @@ void StaticDecals::draw_ids(const View& view, const GBufferView& gbuffer, gl::Pr
 void StaticDecals::draw_full_screen(gl::Flags flags, const View& view, const GBufferView& gbuffer,
                                     gl::ProgramLibrary& programs) {
     const bool one_width = prepared_->has_lines && prepared_->narrowest == prepared_->widest;
-    if (prepared_->has_lines) flags.insert("LINES");
-    if (one_width) flags.insert("ONE_WIDTH");
-    if (prepared_->has_polygons) flags.insert("RINGS");
+    if (prepared_->has_lines)
+        flags.insert("LINES");
+    if (one_width)
+        flags.insert("ONE_WIDTH");
+    if (prepared_->has_polygons)
+        flags.insert("RINGS");
     gl::Program& program = programs.get("static_decals", flags);
     const CellGrid& grid = prepared_->grid;
     program.use();
@@ -59,7 +65,8 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const View& view, const GBu
     cell_texels_.bind(3);
     program.set("decal_styles", 4);
     styles_.bind(4);
-    program.set("cell_shift", static_cast<int>(std::lrint(std::log2(grid.cell_size / view.positions.block_size))));
+    program.set("cell_shift",
+                static_cast<int>(std::lrint(std::log2(grid.cell_size / view.positions.block_size))));
     program.set("quanta_per_metre", static_cast<float>(1.0 / grid.quantum));
     program.set("first_cell", glm::ivec2(grid.first_cell_x, grid.first_cell_y));
     program.set("grid_size", glm::ivec2(grid.columns, grid.rows));

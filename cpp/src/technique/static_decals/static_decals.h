@@ -10,16 +10,18 @@
 namespace decalgl {
 
 class StaticDecals : public Technique {
-  public:
+public:
     std::string name() const override { return "static"; }
-    std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input, Progress& progress) const override;
+    std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input,
+                                               Progress& progress) const override;
     void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
-  private:
-    void draw_full_screen(gl::Flags flags, const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+private:
+    void draw_full_screen(gl::Flags flags, const View& view, const GBufferView& gbuffer,
+                          gl::ProgramLibrary& programs);
 
     std::shared_ptr<const PreparedDecals> prepared_;
     gl::TextureBuffer cell_starts_;

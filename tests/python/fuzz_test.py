@@ -1,0 +1,203 @@
+"""Nonsense at the border between Python and the core ends in typed errors, and never in a crash or a hang."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from small_scenes import MAP, flat_scene
+
+import decalgl as dg
+from decalgl import _core
+
+REFUSED = (dg.DecalError, TypeError)
+slow = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+
+odd_floats = st.sampled_from(
+    [0.0, -0.0, 1.0, -1.0, 50.0, 1e-300, 5e-324, 1e-9, 1e9, 1e15, 1e30, 1e300, -1e30, np.nan, np.inf, -np.inf]
+) | st.floats(-200, 200)
+odd_integers = st.sampled_from([0, 1, -1, 2, 3, 4, 1 << 31, -(1 << 31), (1 << 63) - 1, -(1 << 63)]) | st.integers(-5, 12)
+offsets = st.lists(odd_integers, max_size=5).map(lambda values: np.array(values, dtype=np.int64))
+dtypes = st.sampled_from([np.float64, np.float32, np.int32, np.int64, np.uint8, np.bool_])
+
+
+@st.composite
+def arrays(draw: Any, values: Any) -> Any:
+    """Small arrays of odd shapes and types."""
+    shape = draw(st.sampled_from([(0,), (1,), (3,), (4,), (8,), (0, 2), (1, 2), (4, 2), (4, 3), (2, 2, 2), ()]))
+    count = int(np.prod(shape))
+    content = draw(st.lists(values, min_size=count, max_size=count))
+    with np.errstate(all="ignore"):
+        return np.array(content, dtype=np.float64).reshape(shape).astype(draw(dtypes))
+
+
+def core_scene(terrain: dg.Terrain | None = None) -> _core.Scene:
+    """Flat ground of 100 m in the core."""
+    ground = terrain or dg.Terrain.flat((0.0, 0.0, 100.0, 100.0))
+    return _core.Scene(ground.z, ground.x0, ground.y0, ground.dx, ground.dy, 1.0, _core.Relief())
+
+
+@pytest.fixture(scope="module")
+def renderer() -> _core.Renderer:
+    return _core.Renderer(16, 16, "coverage", 0.5, 1 << 30, "auto", 1, 0)
+
+
+CAMERA = _core.Camera((50.0, 50.0, 100.0), (50.0, 50.0, 0.0), (0.0, 1.0, 0.0), 60.0, 0.0)
+SKY = (0.0, 0.0, 0.0, 0.0)
+
+
+def attempt(*steps: Any) -> bool:
+    """Runs the steps until one is refused; whether none was. Any other exception comes through."""
+    try:
+        for step in steps:
+            step()
+    except REFUSED:
+        return False
+    return True
+
+
+def render_all(renderer: _core.Renderer, scene: _core.Scene, camera: _core.Camera = CAMERA) -> None:
+    renderer.preprocess(scene, None)
+    renderer.update(camera)
+    frame = renderer.render(SKY, SKY)
+    for array in (frame.image, frame.ids, frame.layers, frame.depth, frame.world):
+        assert array.shape[:2] == (16, 16)
+    frame.pick(8, 8)
+
+
+def assert_draws(renderer: _core.Renderer) -> None:
+    """The renderer still works."""
+    scene = core_scene()
+    square = np.array([[0, 0], [100, 0], [100, 100], [0, 100]], dtype=np.float64)
+    one = np.array([0, 1])
+    scene.add_layer("a", True, square, 4 * one, one, one[:1], np.full(4, 255, np.uint8), np.zeros(0), one[:1])
+    render_all(renderer, scene)
+
+
+@slow
+@given(st.data())
+def test_layers(renderer: _core.Renderer, data: Any) -> None:
+    scene = core_scene()
+    given_arrays = {
+        "coordinates": data.draw(arrays(odd_floats)),
+        "part_offsets": data.draw(offsets),
+        "feature_offsets": data.draw(offsets),
+        "rows": data.draw(offsets),
+        "colors": data.draw(arrays(st.integers(0, 255).map(float))),
+        "widths": data.draw(arrays(odd_floats)),
+        "draw_order": data.draw(offsets),
+    }
+    attempt(lambda: scene.add_layer(name="odd", polygons=data.draw(st.booleans()), **given_arrays))
+    attempt(lambda: render_all(renderer, scene))
+    assert_draws(renderer)
+
+
+@st.composite
+def fitting_layers(draw: Any) -> dict[str, Any]:
+    """Layers whose offsets fit, with odd coordinates and widths."""
+    sizes = draw(st.lists(st.integers(0, 6), min_size=1, max_size=4))
+    count = len(sizes)
+    point = st.tuples(odd_floats, odd_floats)
+    coordinates = draw(st.lists(point, min_size=sum(sizes), max_size=sum(sizes)))
+    polygons = draw(st.booleans())
+    return {
+        "polygons": polygons,
+        "coordinates": np.array(coordinates, dtype=np.float64).reshape(-1, 2),
+        "part_offsets": np.cumsum([0, *sizes]),
+        "feature_offsets": np.arange(count + 1),
+        "rows": np.arange(count),
+        "colors": np.array([200, 10, 10, draw(st.sampled_from([0, 90, 255]))] * count, dtype=np.uint8),
+        "widths": np.array([] if polygons else draw(st.lists(odd_floats, min_size=count, max_size=count))),
+        "draw_order": np.array(draw(st.permutations(range(count))), dtype=np.int64),
+    }
+
+
+@slow
+@given(fitting_layers())
+def test_coordinates_and_widths(renderer: _core.Renderer, layer: dict[str, Any]) -> None:
+    scene = core_scene()
+    attempt(lambda: scene.add_layer(name="odd", **layer), lambda: render_all(renderer, scene))
+    assert_draws(renderer)
+
+
+@slow
+@given(
+    st.tuples(odd_floats, odd_floats, odd_floats),
+    st.tuples(odd_floats, odd_floats, odd_floats),
+    st.tuples(odd_floats, odd_floats, odd_floats),
+    st.sampled_from([0.0, 180.0, 1e-300, 1e-9, 179.999999999, 45.0, np.nan, np.inf, -1.0]),
+    odd_floats,
+)
+def test_cameras(renderer: _core.Renderer, eye: Any, target: Any, up: Any, fov: float, height: float) -> None:
+    attempt(lambda: render_all(renderer, core_scene(), _core.Camera(eye, target, up, fov, height)))
+    attempt(
+        lambda: dg.Camera(eye, target, up, fov), lambda: draw_public(dg.Camera(eye, target, up, fov))
+    )
+    attempt(lambda: draw_public(dg.Camera.look_at(eye, target)))
+    attempt(lambda: draw_public(dg.Camera(eye, target, up, None, height)))
+    attempt(lambda: draw_public(dg.Camera.orbit(eye, height, target[0], target[1], fov)))
+    attempt(lambda: draw_public(dg.Camera.top_down((*eye, height))))
+    assert_draws(renderer)
+
+
+PUBLIC = flat_scene()
+
+
+def draw_public(camera: dg.Camera) -> None:
+    frame = PUBLIC.render(camera, (8, 8))
+    assert frame.depth.shape == (8, 8)
+    assert np.isfinite(frame.world[np.isfinite(frame.depth)]).all()
+
+
+@slow
+@given(arrays(odd_floats), odd_floats, odd_floats, odd_floats, odd_floats, odd_floats)
+def test_terrains(
+    renderer: _core.Renderer, z: Any, x0: float, y0: float, dx: float, dy: float, exaggeration: float
+) -> None:
+    def core() -> None:
+        scene = _core.Scene(z, x0, y0, dx, dy, exaggeration, _core.Relief())
+        one = np.array([0, 1])
+        line = np.array([[0.0, 0.0], [1.0, 1.0]])
+        color = np.full(4, 255, np.uint8)
+        scene.add_layer("a", False, line, 2 * one, one, one[:1], color, np.ones(1), one[:1])
+        render_all(renderer, scene)
+
+    attempt(core)
+    attempt(lambda: dg.Scene(dg.Terrain(z, x0, y0, dx, dy), exaggeration).render(MAP, (8, 8)))
+    assert_draws(renderer)
+
+
+@slow
+@given(st.lists(st.integers(0, 255), max_size=7), odd_floats, odd_floats, odd_floats)
+def test_reliefs(renderer: _core.Renderer, ramp: list[int], low: float, high: float, angle: float) -> None:
+    relief = _core.Relief()
+    relief.ramp, relief.lowest, relief.highest = ramp, low, high
+    relief.azimuth, relief.altitude, relief.strength, relief.on_layers = angle, angle, low, high
+    ground = dg.Terrain.flat((0.0, 0.0, 100.0, 100.0))
+    attempt(lambda: render_all(renderer, _core.Scene(ground.z, 0.0, 100.0, 100.0, 100.0, 1.0, relief)))
+    assert_draws(renderer)
+
+
+@slow
+@given(odd_integers, odd_integers, st.sampled_from(["none", "coverage", "", "msaa"]), odd_floats, odd_integers)
+def test_renderers(width: int, height: int, antialias: str, error: float, limit: int) -> None:
+    def draw() -> None:
+        made = _core.Renderer(width, height, antialias, error, limit, "auto", 1, 0)
+        made.preprocess(core_scene(), None)
+        made.update(CAMERA)
+        made.render(SKY, SKY)
+
+    attempt(draw)
+    attempt(lambda: dg.Renderer((width, height), antialias, error, limit, tile=width, threads=height))
+
+
+@slow
+@given(odd_integers, odd_integers)
+def test_pixels(renderer: _core.Renderer, x: int, y: int) -> None:
+    assert_draws(renderer)
+    frame = renderer.render(SKY, SKY)
+    inside = 0 <= x < 16 and 0 <= y < 16
+    assert attempt(lambda: frame.pick(x, y)) == inside
