@@ -25,7 +25,7 @@ NATIVE_SOURCES = $(shell find cpp cmake python/bindings -type f 2>/dev/null) CMa
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 
-.PHONY: help setup build demo test bench lint tidy format sanitize wheel clean distclean
+.PHONY: help setup build demo test bench lint tidy format sanitize wheel wheeltest clean distclean
 
 help:  ## Show the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -67,6 +67,9 @@ sanitize: setup  ## Run the C++ tests under the address, undefined and thread sa
 
 wheel: setup  ## Build a wheel into dist/
 	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .
+
+wheeltest: setup  ## Draw from a wheel in an empty environment
+	tests/wheel/run.sh $(BIN)/python
 
 clean:  ## Remove what was built
 	rm -rf build dist

@@ -1,4 +1,4 @@
-"""Measuring: runs of what is compared take turns, and medians are reported, so that a drifting machine hits all alike."""
+"""Measuring: what is compared takes turns and medians are reported, so that a drifting machine hits all alike."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import platform
 import statistics
 import subprocess
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import decalgl as dg
@@ -111,5 +112,7 @@ def machine() -> dict[str, Any]:
 
 
 def _processor() -> str:
-    with open("/proc/cpuinfo") as lines:
-        return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown")
+    with Path("/proc/cpuinfo").open() as lines:
+        return next(
+            (line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown"
+        )

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import contourpy
-import decalgl as dg
 import numpy as np
+
+import decalgl as dg
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -42,10 +42,9 @@ def scramble(points: np.ndarray, random: np.random.Generator) -> np.ndarray:
 def edges(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Unit normals, offsets and exact coverages of half planes that cross the unit square."""
     angle = (np.arange(count) + 0.5) / count * np.pi / 4
-    normals, offsets = [], []
-    for a in np.linspace(0, 2 * np.pi, 8, endpoint=False):
-        normals.append(np.stack([np.cos(angle + a), np.sin(angle + a)], axis=1))
-    normal = np.concatenate(normals)
+    turns = np.linspace(0, 2 * np.pi, 8, endpoint=False)
+    angles = (turns[:, None] + angle).ravel()
+    normal = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     reach = 0.5 * np.abs(normal).sum(axis=1)
     offsets = np.linspace(-1, 1, 41)[None, :] * reach[:, None]
     fine = (np.arange(256) + 0.5) / 256 - 0.5
@@ -74,7 +73,11 @@ def main() -> None:
     assert best is not None
     print(f"// straight edges: rms {best_error:.4f}, largest {worst:.4f}")
     for row in range(0, COUNT, 4):
-        print("    " + ", ".join(f"vec2({x:.6f}, {y:.6f})" for x, y in best[row : row + 4]) + ("," if row < 28 else ""))
+        print(
+            "    "
+            + ", ".join(f"vec2({x:.6f}, {y:.6f})" for x, y in best[row : row + 4])
+            + ("," if row < 28 else "")
+        )
 
 
 if __name__ == "__main__":

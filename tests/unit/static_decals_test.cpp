@@ -275,3 +275,14 @@ TEST_CASE("cancelling stops the build", "[static]") {
         CHECK(error.kind() == ErrorKind::cancelled);
     }
 }
+
+TEST_CASE("many large polygons over each other do not fill the memory", "[static]") {
+    std::vector<Ring> rings;
+    for (int i = 0; i < 2000; ++i) {
+        const double inset = 0.01 * i;
+        rings.push_back({1000 + inset, 2000 + inset, 1900, 2000, 1900, 2900, 1000, 2900 - inset});
+    }
+    const auto decals = build({polygons(rings)});
+    CHECK(decals->charge.bytes() < (uint64_t{128} << 20));
+    CHECK(decals->query(1500, 2500).size() == rings.size());
+}

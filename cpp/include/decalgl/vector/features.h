@@ -38,6 +38,14 @@ struct Features {
     size_t part_count() const { return part_offsets.size() - 1; }
     size_t vertex_count() const { return coordinates.size() / 2; }
 
+    // All vertices of a feature, part after part.
+    Span<const double> vertices(size_t feature) const {
+        const auto first = static_cast<size_t>(part_offsets[static_cast<size_t>(feature_offsets[feature])]);
+        const auto last =
+            static_cast<size_t>(part_offsets[static_cast<size_t>(feature_offsets[feature + 1])]);
+        return coordinates.subspan(2 * first, 2 * (last - first));
+    }
+
     Span<const double> part(size_t part_index) const {
         const auto first = static_cast<size_t>(part_offsets[part_index]);
         const auto last = static_cast<size_t>(part_offsets[part_index + 1]);

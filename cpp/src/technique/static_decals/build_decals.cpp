@@ -1,8 +1,9 @@
 // From layers to a cell stream, on all cores and with the same bytes on any number of them:
 //
 //   slots     features in draw order, topmost first, cut into runs of about the same number of vertices
-//   records   each run on its own: pieces with their cell and slot, sorted into buckets of cells while in the cache
-//   stream    each bucket on its own: its records of all runs, in order, in two passes that count and then write
+//   records   each run on its own: pieces with their cell and slot, sorted into buckets of cells while in the
+//   cache stream    each bucket on its own: its records of all runs, in order, in two passes that count and
+//   then write
 //
 // A scatter straight into cells would miss the cache on every record.
 #include <algorithm>
@@ -35,12 +36,6 @@ const Layer& layer_of(const TechniqueInput& input, FeatureReference slot) {
     return input.layers[slot.layer - input.first_layer];
 }
 
-size_t vertices_of(const Features& features, size_t feature) {
-    const auto first = static_cast<size_t>(features.feature_offsets[feature]);
-    const auto last = static_cast<size_t>(features.feature_offsets[feature + 1]);
-    return static_cast<size_t>(features.part_offsets[last] - features.part_offsets[first]);
-}
-
 void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
     for (size_t l = input.layers.size(); l-- > 0;) {
         const Layer& layer = input.layers[l];
@@ -48,16 +43,19 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
         for (size_t rank = layer.features.feature_count(); rank-- > 0;) {
             const size_t feature = layer.feature_at(rank);
             const uint8_t* color = layer.color(feature);
-            if (color[3] == 0) continue;
+            if (color[3] == 0)
+                continue;
             DecalStyle style{{color[0], color[1], color[2], color[3]}, 0.0F};
             if (lines) {
                 const double half_width = 0.5 * layer.width(feature) / decals.grid.quantum;
                 style.half_width = static_cast<float>(half_width);
                 decals.largest_scale = std::max(decals.largest_scale, line_scale(half_width));
                 decals.widest = std::max(decals.widest, style.half_width);
-                decals.narrowest = decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
+                decals.narrowest =
+                    decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
             }
-            decals.slots.push_back({input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
+            decals.slots.push_back(
+                {input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
             decals.styles.push_back(style);
             decals.has_translucency |= color[3] != 255;
             (lines ? decals.has_lines : decals.has_polygons) = true;
@@ -67,12 +65,14 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
 
 std::vector<Run> cut_into_runs(const TechniqueInput& input, const PreparedDecals& decals) {
     size_t vertices = 0;
-    for (const Layer& layer : input.layers) vertices += layer.features.vertex_count();
+    for (const Layer& layer : input.layers)
+        vertices += layer.features.vertex_count();
     const size_t vertices_per_run = std::clamp(vertices / wanted_runs, smallest_run, largest_run);
     std::vector<Run> runs;
     Run run{0, 0, 0};
     for (size_t slot = 0; slot < decals.slots.size(); ++slot) {
-        run.vertices += vertices_of(layer_of(input, decals.slots[slot]).features, decals.slots[slot].feature);
+        run.vertices +=
+            layer_of(input, decals.slots[slot]).features.vertices(decals.slots[slot].feature).size() / 2;
         run.last_slot = slot + 1;
         if (run.vertices >= vertices_per_run || run.last_slot == decals.slots.size()) {
             runs.push_back(run);
@@ -86,7 +86,8 @@ template <typename OnPart>
 void for_each_part(const Features& features, size_t feature, OnPart on_part) {
     const auto first = static_cast<size_t>(features.feature_offsets[feature]);
     const auto last = static_cast<size_t>(features.feature_offsets[feature + 1]);
-    for (size_t part = first; part < last; ++part) on_part(features.part(part));
+    for (size_t part = first; part < last; ++part)
+        on_part(features.part(part));
 }
 
 CellRecords make_records(const TechniqueInput& input, const PreparedDecals& decals, const Run& run) {
@@ -118,7 +119,8 @@ std::vector<CellRecords> make_all_records(const TechniqueInput& input, const Pre
     parallel_for(
         runs.size(), 1, input.threads,
         [&](size_t begin, size_t end) {
-            for (size_t run = begin; run < end; ++run) all[run] = make_records(input, decals, runs[run]);
+            for (size_t run = begin; run < end; ++run)
+                all[run] = make_records(input, decals, runs[run]);
         },
         [&](double share) { progress.report(0.7 * share); });
     return all;
@@ -141,7 +143,8 @@ void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& r
         size = start;
     }
     if (total > std::numeric_limits<uint32_t>::max())
-        throw Error(ErrorKind::memory, "the static index would need " + format_bytes(total * sizeof(CellTexel)) +
+        throw Error(ErrorKind::memory, "the static index would need " +
+                                           format_bytes(total * sizeof(CellTexel)) +
                                            ", more than one index can address; split the layers' data");
     decals.charge.resize(total * sizeof(CellTexel) + decals.cell_starts.size() * sizeof(uint32_t) +
                          decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference)));
@@ -149,7 +152,8 @@ void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& r
     progress.report(0.8);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
         for (size_t bucket = begin; bucket < end; ++bucket)
-            write_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles, static_cast<uint32_t>(sizes[bucket]),
+            write_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles,
+                                static_cast<uint32_t>(sizes[bucket]),
                                 &decals.cell_starts[bucket * BUCKET_CELLS], decals.texels.data());
     });
     decals.cell_starts.back() = static_cast<uint32_t>(total);
@@ -163,11 +167,13 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
     decals->grid = CellGrid::over(input.bounds, input.positions, choose_resolution(input));
     collect_slots(input, *decals);
     const std::vector<Run> runs = cut_into_runs(input, *decals);
-    for (const Run& run : runs) decals->segments += run.vertices;
+    for (const Run& run : runs)
+        decals->segments += run.vertices;
 
     std::vector<CellRecords> records = make_all_records(input, *decals, runs, progress);
     size_t record_count = 0;
-    for (const CellRecords& run : records) record_count += run.size();
+    for (const CellRecords& run : records)
+        record_count += run.size();
     const MemoryCharge working(input.memory, "static: working memory", record_count * sizeof(CellRecord));
     write_stream(input, records, *decals, progress);
     decals->pieces = record_count;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace decalgl {
 namespace {
@@ -10,44 +12,74 @@ constexpr int32_t coarsest = 64;
 constexpr int32_t coarsest_wanted = 1024;
 constexpr int32_t finest = 4096;
 constexpr size_t samples_per_layer = 4096;
-constexpr double references_per_segment = 8.0;
 
-// The number of cells of a size that the layer's strokes touch, estimated from evenly spread features.
-double estimate_references(const Layer& layer, double cell_size) {
+// What an index may hold: some records a segment, and a fixed number for the cells inside large features.
+constexpr double records_per_segment = 8.0;
+constexpr double records_besides = 1 << 22;
+
+// A feature that stands for `weight` of them.
+struct Sample {
+    double weight;
+    double vertices;
+    double width;  // 0 for polygons
+    double area;   // of a polygon's bounding box inside the terrain's bounds
+};
+
+double area_of(Span<const double> coordinates, const Bounds& bounds) {
+    constexpr double far = std::numeric_limits<double>::max();
+    Bounds box{far, far, -far, -far};
+    for (size_t i = 0; i < coordinates.size(); i += 2) {
+        box.min_x = std::min(box.min_x, coordinates[i]);
+        box.max_x = std::max(box.max_x, coordinates[i]);
+        box.min_y = std::min(box.min_y, coordinates[i + 1]);
+        box.max_y = std::max(box.max_y, coordinates[i + 1]);
+    }
+    const double width = std::min(box.max_x, bounds.max_x) - std::max(box.min_x, bounds.min_x);
+    const double height = std::min(box.max_y, bounds.max_y) - std::max(box.min_y, bounds.min_y);
+    return std::max(width, 0.0) * std::max(height, 0.0);
+}
+
+// Evenly spread features of a layer.
+void add_samples(const Layer& layer, const Bounds& bounds, std::vector<Sample>& samples) {
     const Features& features = layer.features;
     const size_t count = features.feature_count();
     const size_t step = std::max<size_t>(1, count / samples_per_layer);
-    double references = 0.0;
     for (size_t feature = 0; feature < count; feature += step) {
-        const double width = layer.width(feature);
-        const auto first = static_cast<size_t>(features.feature_offsets[feature]);
-        const auto last = static_cast<size_t>(features.feature_offsets[feature + 1]);
-        const auto vertices = static_cast<double>(features.part_offsets[last] - features.part_offsets[first]);
-        const double across = 1.0 + width / cell_size;
-        references += static_cast<double>(step) * vertices * across * across;
+        const Span<const double> coordinates = features.vertices(feature);
+        const bool is_line = features.kind == FeatureKind::lines;
+        samples.push_back({static_cast<double>(std::min(step, count - feature)),
+                           static_cast<double>(coordinates.size() / 2), is_line ? layer.width(feature) : 0.0,
+                           is_line ? 0.0 : area_of(coordinates, bounds)});
     }
-    return references;
+}
+
+double estimate_records(const std::vector<Sample>& samples, double cell_size) {
+    double records = 0.0;
+    for (const Sample& sample : samples) {
+        const double across = 1.0 + sample.width / cell_size;
+        records +=
+            sample.weight * (sample.vertices * across * across + sample.area / (cell_size * cell_size));
+    }
+    return records;
 }
 
 }  // namespace
 
 int32_t choose_resolution(const TechniqueInput& input) {
     double segments = 0.0;
-    for (const Layer& layer : input.layers)
+    std::vector<Sample> samples;
+    for (const Layer& layer : input.layers) {
         segments += static_cast<double>(layer.features.vertex_count());
+        add_samples(layer, input.bounds, samples);
+    }
     const double wanted = std::exp2(std::round(std::log2(std::sqrt(std::max(segments, 1.0) / 1.2))));
     auto resolution = std::clamp(static_cast<int32_t>(wanted), coarsest_wanted, finest);
 
     const double extent =
         std::max(input.bounds.max_x - input.bounds.min_x, input.bounds.max_y - input.bounds.min_y);
-    const double allowed = references_per_segment * segments + 65536.0;
-    for (; resolution > coarsest; resolution /= 2) {
-        double references = 0.0;
-        for (const Layer& layer : input.layers)
-            if (layer.features.kind == FeatureKind::lines)
-                references += estimate_references(layer, extent / resolution);
-        if (references <= allowed)
-            break;
+    const double allowed = records_per_segment * segments + records_besides;
+    while (resolution > coarsest && estimate_records(samples, extent / resolution) > allowed) {
+        resolution /= 2;
     }
     return resolution;
 }
