@@ -37,6 +37,29 @@ void validate(const Relief& relief) {
                                           std::to_string(longest_ramp) + " colours");
 }
 
+// Vertices and widths are counted in billionths of the terrain's extent; these many fit the integers.
+constexpr double farthest_in_extents = 1e8;
+constexpr double widest_in_extents = 1e4;
+
+void validate_reach(const Layer& layer, const Bounds& bounds) {
+    const double extent = std::max(bounds.max_x - bounds.min_x, bounds.max_y - bounds.min_y);
+    for (const double width : layer.widths) {
+        if (!(width <= widest_in_extents * extent))
+            throw Error(ErrorKind::style,
+                        "layer '" + layer.name + "': a line is " + std::to_string(width) +
+                            " m wide, thousands of times the terrain's size; check the unit");
+    }
+    const double reach = farthest_in_extents * extent;
+    // No coordinate or corner lies farther out than 1e10 m.
+    if (reach > 2e10)
+        return;
+    for (size_t i = 0; i < layer.features.coordinates.size(); ++i) {
+        if (std::abs(layer.features.coordinates[i] - (i % 2 == 0 ? bounds.min_x : bounds.min_y)) > reach)
+            throw Error(ErrorKind::input, "layer '" + layer.name + "': vertex " + std::to_string(i / 2) +
+                                              " is too far away for a terrain this small; check the CRS");
+    }
+}
+
 void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, PreparedScene& prepared) {
     const Stopwatch watch;
     progress.report(0.0);
@@ -54,8 +77,11 @@ void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, Pr
 
 void prepare_layers(const Scene& scene, unsigned threads, const MemoryAccount& memory, Progress progress,
                     PreparedScene& prepared) {
-    if (scene.layers.empty())
+    const bool has_ground = scene.terrain.rows() > 1 && scene.terrain.columns() > 1;
+    if (scene.layers.empty() || !has_ground)
         return;
+    for (const Layer& layer : scene.layers)
+        validate_reach(layer, prepared.terrain.bounds());
     const Stopwatch watch;
     TechniqueInput input;
     input.layers = scene.layers;

@@ -8,6 +8,8 @@
 namespace decalgl {
 namespace {
 
+constexpr double farthest = 1e9;  // metres
+
 struct OwnedArrays {
     std::vector<double> coordinates;
     std::vector<int64_t> part_offsets;
@@ -58,9 +60,10 @@ void validate(const Features& features, const std::string& layer_name) {
     if (features.rows.size() + 1 != features.feature_offsets.size())
         throw Error(ErrorKind::input, "layer '" + layer_name + "': needs one row number for each feature");
     for (size_t i = 0; i < features.coordinates.size(); ++i) {
-        if (!std::isfinite(features.coordinates[i]))
+        if (!(std::abs(features.coordinates[i]) <= farthest))
             throw Error(ErrorKind::input, "layer '" + layer_name + "': vertex " + std::to_string(i / 2) +
-                                              " is not finite; remove or repair it");
+                                              " is not finite or farther than 1e9 m from the origin; remove "
+                                              "or repair it");
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "decalgl/vector/position_grid.h"
+#include "decalgl/core/position_grid.h"
 
 namespace decalgl {
 

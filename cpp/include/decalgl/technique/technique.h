@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "decalgl/core/memory.h"
+#include "decalgl/core/position_grid.h"
 #include "decalgl/core/progress.h"
 #include "decalgl/vector/layer.h"
-#include "decalgl/vector/position_grid.h"
 
 namespace decalgl::gl {
 class Framebuffer;

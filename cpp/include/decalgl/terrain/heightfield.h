@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "decalgl/vector/position_grid.h"
+#include "decalgl/core/position_grid.h"
 
 namespace decalgl {
 

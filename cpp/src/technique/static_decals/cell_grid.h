@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "decalgl/vector/position_grid.h"
+#include "decalgl/core/position_grid.h"
 #include "technique/static_decals/cell_stream.h"
 
 namespace decalgl {

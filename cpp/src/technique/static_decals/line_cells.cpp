@@ -110,8 +110,8 @@ struct CellSpan {
     int32_t last;
 
     CellSpan(int64_t low, int64_t high, int32_t count)
-        : first(static_cast<int32_t>(std::max<int64_t>(low >> CELL_BITS, 0))),
-          last(static_cast<int32_t>(std::min<int64_t>(high >> CELL_BITS, count - 1))) {}
+        : first(static_cast<int32_t>(std::clamp<int64_t>(low >> CELL_BITS, 0, count))),
+          last(static_cast<int32_t>(std::clamp<int64_t>(high >> CELL_BITS, -1, count - 1))) {}
 };
 
 // Column by column: the rows that the widened segment reaches there.

@@ -1,4 +1,4 @@
-#include "decalgl/vector/position_grid.h"
+#include "decalgl/core/position_grid.h"
 
 #include <algorithm>
 #include <cmath>
