@@ -1,8 +1,7 @@
 """The figures in the documentation, written from bench/results/latest.json: `python -m bench --docs`.
 
-    <!-- bench:NAME -->        what stands between the marks is replaced by the table that
-    ...                        `BLOCKS` makes for NAME
-    <!-- /bench -->
+What stands between the lines <!-- bench:NAME --> and <!-- /bench --> of a page is replaced by what `BLOCKS` makes
+for NAME.
 """
 
 from __future__ import annotations
@@ -62,16 +61,17 @@ def summary(results: Results) -> str:
             one["scene"],
             one["view"],
             f"{one['static_none_ms']:.0f} ms",
+            f"{one['S']:.1f}",
             f"{one['static_coverage_ms']:.0f} ms",
             f"{one['terrain_and_compose_ms']:.0f} ms",
         )
         for one in _views(results)
     ]
-    header = ("scene", "view", "layers, `none`", "layers, `coverage`", "terrain and compose")
+    header = ("scene", "view", "layers, `none`", "÷ floor", "layers, `coverage`", "terrain and compose")
     costs = [
-        f"- {one['scene']}: {one['segments']:,.0f} segments are prepared in {one['preprocess_ms']:.0f} ms (the terrain"
-        f" in {one['terrain_preprocess_ms']:.0f} ms) and take {one['bytes_per_segment']:.0f} bytes each; no vertex"
-        f" moves by more than {1000 * one['quantum_m']:.0f} mm."
+        f"- {one['scene']}: {one['segments']:,.0f} vertices are prepared in {one['preprocess_ms']:.0f} ms (the"
+        f" terrain in {one['terrain_preprocess_ms']:.0f} ms) and take {one['bytes_per_segment']:.0f} bytes each;\n"
+        f"  no vertex moves by more than {1000 * one['quantum_m']:.0f} mm."
         for one in _prepared(results)
     ]
     return "\n".join([_table(header, rows, left=2), "", *costs, "", machine(results)])
@@ -106,7 +106,16 @@ def ratios(results: Results) -> str:
         for one in _prepared(results)
     ]
     drawn_header = ("scene", "view", "floor", "`none`", "S", "`coverage`", "AA", "empty")
-    prepared_header = ("scene", "segments", "pieces", "preprocess", "radix sort", "P", "bytes a segment", "quantum")
+    prepared_header = (
+        "scene",
+        "vertices",
+        "pieces",
+        "preprocess",
+        "radix sort",
+        "P",
+        "bytes a vertex",
+        "quantum",
+    )
     tables = [_table(drawn_header, drawn, left=2), _table(prepared_header, prepared, left=1)]
     return "\n\n".join([*tables, machine(results)])
 

@@ -28,7 +28,6 @@ if(app_sources AND TARGET decalgl_geo)
     decalgl_require(ZLIB zlib1g-dev)
     decalgl_require(nlohmann_json nlohmann-json3-dev)
     decalgl_require(CLI11 libcli11-dev)
-    decalgl_require(ZLIB zlib1g-dev)
 
     # All of the program but main, so that tests can call it.
     add_library(decalgl_demo_parts STATIC ${app_sources})

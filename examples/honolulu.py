@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import gzip
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import contourpy
 import geopandas as gpd
@@ -78,7 +78,8 @@ def isolines(terrain: dg.Terrain, step: float) -> gpd.GeoDataFrame:
     top = float(np.nanmax(terrain.z))
     lines, elevations = [], []
     for elevation in np.arange(step, top, step):
-        found = [shapely.LineString(line) for line in generator.lines(elevation) if len(line) > 1]
+        contours: Any = generator.lines(elevation)  # arrays (points, 2)
+        found = [shapely.LineString(line) for line in contours if len(line) > 1]
         lines += found
         elevations += [float(elevation)] * len(found)
     return gpd.GeoDataFrame({"elevation": elevations}, geometry=lines, crs=terrain.crs)

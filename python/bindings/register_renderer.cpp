@@ -158,6 +158,8 @@ void register_renderer(py::module_& module) {
                 py::dict result;
                 result["pieces"] = report.pieces;
                 result["bytes"] = report.bytes;
+                result["longest_walk"] = report.longest_walk;
+                result["shader_steps"] = report.shader_steps;
                 return result;
             },
             py::arg("camera"))

@@ -22,6 +22,7 @@ from rich.table import Table
 
 from . import _describe, _drawing
 from .errors import CancelledError, DecalError, FileError, InputError
+from .frame import picture_format
 
 app = typer.Typer(
     help="Vector maps drawn exactly on terrain.",
@@ -182,6 +183,7 @@ def _check_output(output: Path | None) -> Path:
         raise FileError(
             f"There is no folder '{output.absolute().parent}'. Make it first, or name another place."
         )
+    picture_format(output)
     return output
 
 

@@ -161,12 +161,7 @@ class Frame:
         from PIL import Image
 
         path = Path(path)
-        ending = path.suffix.lower()
-        file_format = Image.registered_extensions().get(ending)
-        if file_format not in Image.SAVE:
-            raise FileError(
-                f"Cannot write {path}: no picture format is known by the ending {ending!r}. Use .png."
-            )
+        file_format = picture_format(path)
         picture = Image.fromarray(self.image)
         if file_format not in KEEP_ALPHA:
             white = Image.new("RGBA", picture.size, "white")
@@ -188,3 +183,16 @@ class Frame:
             "Draw a smaller picture.",
         )
         self._read.add(what)
+
+
+def picture_format(path: Path) -> str:
+    """The name of the picture format that the ending of `path` means. Raises FileError."""
+    from PIL import Image
+
+    ending = path.suffix.lower()
+    file_format = Image.registered_extensions().get(ending, "")
+    if file_format not in Image.SAVE:
+        raise FileError(
+            f"Cannot write {path}: no picture format is known by the ending {ending!r}. Use .png."
+        )
+    return file_format

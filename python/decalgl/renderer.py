@@ -6,6 +6,7 @@ scene ──▶ preprocess ──▶ update(camera) ──▶ render ──▶ F
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from . import _core
 from ._colors import colormap, parse_color
 from ._raster import check_memory
 from .camera import checked_size
-from .errors import CancelledError, InputError, UnsupportedError
+from .errors import CancelledError, DecalWarning, InputError, UnsupportedError
 from .frame import Frame
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ BACKENDS = ("auto", "egl", "osmesa")
 SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))
 MOST_THREADS = 1024
 LARGEST_SIDE = 1 << 20
+COVERAGE_SAMPLES = 32
 LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 IMAGE_BYTES, SURFACE_BYTES, TARGET_SIDE = 4, 64, 4096
 
@@ -72,6 +74,7 @@ class Renderer:
             "threads": threads,
             "tile": tile,
         }
+        self.antialias = antialias
         self._core = _core.Renderer(
             width=width,
             height=height,
@@ -95,6 +98,7 @@ class Renderer:
         """The size and anti-aliasing of the pictures from the next `update` on."""
         width, height = _checked_picture(size)
         self._core.set_picture(width, height, _checked_antialias(antialias))
+        self.antialias = antialias
         self.size = (width, height)
 
     def preprocess(self, scene: Scene, progress: Progress | None = None) -> None:
@@ -121,9 +125,10 @@ class Renderer:
     def update(self, camera: Camera) -> dict[str, int]:
         """Makes ready to draw from a camera.
 
-        Returns counters: `pieces` in the index and `bytes` of GL memory. Raises GraphicsError where there is
-        no OpenGL, naming what was tried and what to install, and MemoryLimitError where the picture or the
-        scene does not fit.
+        Returns counters: `pieces` in the index, `bytes` of GL memory, `longest_walk`, the most pieces that one
+        point of a pixel looks at, and `shader_steps`, the most that the driver's shaders can (0: no limit).
+        Warns where a pixel may need more. Raises GraphicsError where there is no OpenGL, naming what was tried
+        and what to install, and MemoryLimitError where the picture or the scene does not fit.
         """
         width, height = self.size
         if width * height > LARGE_PICTURE:
@@ -140,6 +145,7 @@ class Renderer:
                 view_height=fitted.view_height or 0.0,
             )
         )
+        _warn_of_long_walks(report, COVERAGE_SAMPLES if self.antialias == "coverage" else 1)
         self._updated_layers = self._prepared_layers
         return report
 
@@ -179,6 +185,18 @@ class _ExceptionKeeper:
             self.error = error
             return False
         return not (isinstance(answer, (bool, np.bool_)) and not answer)
+
+
+def _warn_of_long_walks(report: dict[str, int], visits: int) -> None:
+    """Some drivers end a shader that takes too long, and what lies lowest is then missing from a pixel."""
+    if report["shader_steps"] and report["longest_walk"] * visits > report["shader_steps"]:
+        warnings.warn(
+            f"One cell of the index holds {report['longest_walk']:,} pieces, and this driver's shaders stop after"
+            f" {report['shader_steps']:,} steps: where that many features lie under one pixel, the lowest may be"
+            " missing. Look closer, leave features out, use antialias='none', or draw on a GPU.",
+            DecalWarning,
+            stacklevel=3,
+        )
 
 
 def _core_scene(scene: Scene) -> _core.Scene:

@@ -51,11 +51,16 @@ class Terrain:
     crs: pyproj.CRS | None = None
 
     def __post_init__(self) -> None:
-        z = np.ascontiguousarray(self.z, dtype=np.float32)
-        if z.ndim != 2 or z.size == 0:
+        given = np.asarray(self.z)
+        if given.ndim != 2 or given.size == 0 or given.dtype.kind not in "iufb":
             raise InputError(
-                f"A terrain needs at least one sample in rows and columns, but z has shape {z.shape}."
+                "A terrain needs at least one sample in rows and columns of real heights, but z has shape"
+                f" {given.shape} and type {given.dtype}."
             )
+        with np.errstate(over="ignore"):
+            z = np.ascontiguousarray(given, dtype=np.float32)
+        if np.isinf(z).any():
+            raise InputError("A terrain's heights must be finite, or NaN for holes, but some are infinite.")
         if z.flags.writeable:
             z = z.view()
             z.flags.writeable = False

@@ -124,6 +124,7 @@ def test_render_takes_flags(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -
         (["-o", "{folder}/a.png"], "--dem"),
         (["{scene}", "-o", "{folder}"], "is a folder"),
         (["{scene}", "-o", "{folder}/absent/a.png"], "no folder"),
+        (["{scene}", "-o", "{folder}/a.pgn"], "Use .png"),
         (["{folder}/absent.toml", "-o", "{folder}/a.png"], "no scene file"),
         (["{scene}", "-o", "{folder}/a.png", "--view", "nera"], "Did you mean 'near'"),
         (["{scene}", "-o", "{folder}/a.png", "--dem", "x.tif"], "--dem"),

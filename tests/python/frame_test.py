@@ -9,9 +9,21 @@ import numpy as np
 import pytest
 from PIL import Image
 from shapely import LineString, box
-from small_scenes import BOUNDS, DIAGONAL, MAP, OBLIQUE, RED, SIZE, count_color, draw, flat_scene, hilly_scene, pixel
 
 import decalgl as dg
+from small_scenes import (
+    BOUNDS,
+    DIAGONAL,
+    MAP,
+    OBLIQUE,
+    RED,
+    SIZE,
+    count_color,
+    draw,
+    flat_scene,
+    hilly_scene,
+    pixel,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,7 +32,9 @@ if TYPE_CHECKING:
 def layered_scene() -> dg.Scene:
     """Two polygons and a line, which all lie over (50, 50)."""
     scene = hilly_scene()
-    scene.add_polygons([box(0, 0, 5, 5), box(20, 20, 80, 80), box(40, 40, 60, 60)], color="red", name="fields")
+    scene.add_polygons(
+        [box(0, 0, 5, 5), box(20, 20, 80, 80), box(40, 40, 60, 60)], color="red", name="fields"
+    )
     scene.add_lines([DIAGONAL], width=8, width_units="m", color="blue", alpha=0.5, name="road")
     return scene
 
@@ -77,7 +91,14 @@ def test_world_and_depth_lie_on_the_pixels_ray() -> None:
 
 def test_ids_and_layers_name_the_topmost_feature() -> None:
     frame = draw(layered_scene())
-    at = {(2, 2): (0, 1), (2, 4): (0, 1), (30, 70): (1, 0), (58, 42): (2, 0), (50, 50): (0, 1), (90, 10): (-1, -1)}
+    at = {
+        (2, 2): (0, 1),
+        (2, 4): (0, 1),
+        (30, 70): (1, 0),
+        (58, 42): (2, 0),
+        (50, 50): (0, 1),
+        (90, 10): (-1, -1),
+    }
     for (x, y), (row, layer) in at.items():
         place = (SIZE[1] - 1 - y, x)
         assert (frame.ids[place], frame.layers[place]) == (row, layer), (x, y)
@@ -102,7 +123,18 @@ def test_pick_lists_all_features_topmost_first() -> None:
 
 
 @pytest.mark.parametrize(
-    "place", [(-1, 0), (0, 100), (100, 0), (0.5, 0), (float("nan"), 0), (float("inf"), 0), ("x", 0), (None, 0), (1 << 70, 0)]
+    "place",
+    [
+        (-1, 0),
+        (0, 100),
+        (100, 0),
+        (0.5, 0),
+        (float("nan"), 0),
+        (float("inf"), 0),
+        ("x", 0),
+        (None, 0),
+        (1 << 70, 0),
+    ],
 )
 def test_pick_outside_the_picture(place: Any) -> None:
     frame = draw(flat_scene())

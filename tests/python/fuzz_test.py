@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from small_scenes import MAP, flat_scene
 
 import decalgl as dg
 from decalgl import _core
+from small_scenes import MAP, flat_scene
 
 REFUSED = (dg.DecalError, TypeError)
 slow = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -19,7 +19,9 @@ slow = settings(max_examples=60, deadline=None, suppress_health_check=[HealthChe
 odd_floats = st.sampled_from(
     [0.0, -0.0, 1.0, -1.0, 50.0, 1e-300, 5e-324, 1e-9, 1e9, 1e15, 1e30, 1e300, -1e30, np.nan, np.inf, -np.inf]
 ) | st.floats(-200, 200)
-odd_integers = st.sampled_from([0, 1, -1, 2, 3, 4, 1 << 31, -(1 << 31), (1 << 63) - 1, -(1 << 63)]) | st.integers(-5, 12)
+odd_integers = st.sampled_from(
+    [0, 1, -1, 2, 3, 4, 1 << 31, -(1 << 31), (1 << 63) - 1, -(1 << 63)]
+) | st.integers(-5, 12)
 offsets = st.lists(odd_integers, max_size=5).map(lambda values: np.array(values, dtype=np.int64))
 dtypes = st.sampled_from([np.float64, np.float32, np.int32, np.int64, np.uint8, np.bool_])
 
@@ -27,7 +29,9 @@ dtypes = st.sampled_from([np.float64, np.float32, np.int32, np.int64, np.uint8, 
 @st.composite
 def arrays(draw: Any, values: Any) -> Any:
     """Small arrays of odd shapes and types."""
-    shape = draw(st.sampled_from([(0,), (1,), (3,), (4,), (8,), (0, 2), (1, 2), (4, 2), (4, 3), (2, 2, 2), ()]))
+    shape = draw(
+        st.sampled_from([(0,), (1,), (3,), (4,), (8,), (0, 2), (1, 2), (4, 2), (4, 3), (2, 2, 2), ()])
+    )
     count = int(np.prod(shape))
     content = draw(st.lists(values, min_size=count, max_size=count))
     with np.errstate(all="ignore"):
@@ -133,9 +137,7 @@ def test_coordinates_and_widths(renderer: _core.Renderer, layer: dict[str, Any])
 )
 def test_cameras(renderer: _core.Renderer, eye: Any, target: Any, up: Any, fov: float, height: float) -> None:
     attempt(lambda: render_all(renderer, core_scene(), _core.Camera(eye, target, up, fov, height)))
-    attempt(
-        lambda: dg.Camera(eye, target, up, fov), lambda: draw_public(dg.Camera(eye, target, up, fov))
-    )
+    attempt(lambda: dg.Camera(eye, target, up, fov), lambda: draw_public(dg.Camera(eye, target, up, fov)))
     attempt(lambda: draw_public(dg.Camera.look_at(eye, target)))
     attempt(lambda: draw_public(dg.Camera(eye, target, up, None, height)))
     attempt(lambda: draw_public(dg.Camera.orbit(eye, height, target[0], target[1], fov)))
@@ -182,7 +184,9 @@ def test_reliefs(renderer: _core.Renderer, ramp: list[int], low: float, high: fl
 
 
 @slow
-@given(odd_integers, odd_integers, st.sampled_from(["none", "coverage", "", "msaa"]), odd_floats, odd_integers)
+@given(
+    odd_integers, odd_integers, st.sampled_from(["none", "coverage", "", "msaa"]), odd_floats, odd_integers
+)
 def test_renderers(width: int, height: int, antialias: str, error: float, limit: int) -> None:
     def draw() -> None:
         made = _core.Renderer(width, height, antialias, error, limit, "auto", 1, 0)

@@ -11,9 +11,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from shapely import box
-from small_scenes import DIAGONAL, MAP, OBLIQUE, RED, SIZE, assert_usable, count_color, draw, flat_scene, hilly_scene
 
 import decalgl as dg
+from small_scenes import (
+    DIAGONAL,
+    MAP,
+    OBLIQUE,
+    RED,
+    SIZE,
+    assert_usable,
+    count_color,
+    draw,
+    flat_scene,
+    hilly_scene,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,7 +45,7 @@ def test_three_stages_by_hand() -> None:
     scene = mixed_scene()
     renderer.preprocess(scene)
     report = renderer.update(OBLIQUE)
-    assert set(report) == {"pieces", "bytes"}
+    assert set(report) == {"pieces", "bytes", "longest_walk", "shader_steps"}
     assert report["pieces"] > 0
     frame = renderer.render()
     np.testing.assert_array_equal(frame.image, draw(scene, OBLIQUE).image)
@@ -145,7 +156,7 @@ def test_pictures_larger_than_the_driver_draws() -> None:
 
 def test_terrains_larger_than_the_driver_holds() -> None:
     scene = dg.Scene(dg.Terrain(np.zeros((2, 70_000), np.float32), 0, 0, 1, 1))
-    with pytest.raises(dg.MemoryLimitError, match="The terrain has 2 x 70000 samples.*open a part"):
+    with pytest.raises(dg.MemoryLimitError, match=r"The terrain has 2 x 70000 samples.*open a part"):
         draw(scene)
 
 
@@ -153,9 +164,9 @@ def test_pictures_larger_than_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = flat_scene()
     large = draw(scene, size=(2100, 2100))
     monkeypatch.setattr("decalgl._raster.available_memory", lambda: 1 << 20)
-    with pytest.raises(dg.MemoryLimitError, match="2100 x 2100 pixels.*smaller size"):
+    with pytest.raises(dg.MemoryLimitError, match=r"2100 x 2100 pixels.*smaller size"):
         draw(scene, size=(2100, 2100))
-    with pytest.raises(dg.MemoryLimitError, match="world of a picture.*smaller picture"):
+    with pytest.raises(dg.MemoryLimitError, match=r"world of a picture.*smaller picture"):
         large.world  # noqa: B018
     with pytest.raises(dg.MemoryLimitError, match="smaller picture"):
         large.pick(0, 0)
@@ -214,7 +225,7 @@ def test_progress_is_told_and_false_cancels() -> None:
     renderer = dg.Renderer(SIZE, antialias="none")
     for answer in (False, np.False_):
         with pytest.raises(dg.CancelledError, match="cancelled"):
-            renderer.preprocess(scene, progress=lambda *_, answer=answer: answer)  # type: ignore[misc]
+            renderer.preprocess(scene, progress=lambda *_, answer=answer: answer)
     with pytest.raises(dg.CancelledError, match="layers"):
         renderer.preprocess(scene, progress=lambda stage, _: stage != "layers")
     with pytest.raises(dg.InputError, match="preprocess"):
@@ -236,7 +247,7 @@ class Halt(BaseException):
 
 @pytest.mark.parametrize("error", [ValueError("mine"), KeyboardInterrupt(), Halt("stop")])
 def test_exceptions_of_the_callback_come_back_as_they_were(error: BaseException) -> None:
-    def fail(stage: str, fraction: float) -> bool:
+    def fail(*_: object) -> bool:
         raise error
 
     scene = flat_scene()

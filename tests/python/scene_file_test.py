@@ -146,9 +146,7 @@ def test_missing_and_odd_files(tmp_path: Path) -> None:
 def test_paths_are_relative_to_the_file(tmp_path: Path) -> None:
     assert data_path("a/b.tif", tmp_path) == str(tmp_path / "a" / "b.tif")
     assert data_path("/vsizip/a.zip/b.shp", tmp_path) == "/vsizip/a.zip/b.shp"
-    packed = tmp_path / "a.geojson.gz"
-    packed.write_bytes(gzip.compress(b"{}"))
-    assert data_path("a.geojson.gz", tmp_path) == f"/vsigzip/{packed.resolve()}"
+    assert data_path("https://example.org/a.tif", tmp_path) == "https://example.org/a.tif"
 
 
 def build(folder: Path, extra: str, square: dict[str, Any] = SQUARE) -> Any:
@@ -185,7 +183,11 @@ def test_a_scene_is_built(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("extra", "expected"),
     [
-        ("[[layers]]\ntype = 'lines'\npath = 'absent.gpkg'", "absent.gpkg"),
+        ("[[layers]]\ntype = 'polygons'\npath = 'absent.gpkg'", "absent.gpkg"),
+        ("[[layers]]\ntype = 'lines'\npath = 'absent.gpkg'\nwidth_units = 'm'", "absent.gpkg"),
+        ("[[layers]]\ntype = 'lines'\npath = 'square.geojson.gz'\nname = 'roads'", "'roads'"),
+        ("[relief]\ncolor = 'graay'", "graay"),
+        ("[relief]\naltitude = 0", "altitude"),
         ("[views.a]\nlook_at = { eye = [0, 0, 0], target = [0, 0, 0] }", "[views.a]"),
         ("[views.a]\nlook_at = { eye = [0, 0, 1], target = [0, 0, 0], crs = 'nonsense' }", "nonsense"),
     ],

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 import shapely
 from shapely import GeometryCollection, LineString, Point, Polygon, box
+
+import decalgl as dg
 from small_scenes import (
     BLUE,
     DIAGONAL,
@@ -24,8 +26,6 @@ from small_scenes import (
     hilly_scene,
     pixel,
 )
-
-import decalgl as dg
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -135,7 +135,9 @@ def test_home_shows_the_whole_terrain() -> None:
 def test_exaggeration_lifts_the_ground() -> None:
     low, high = hilly_scene(), hilly_scene(exaggeration=3.0)
     assert np.nanmax(high.heights) == pytest.approx(60.0, abs=0.01)
-    assert np.nanmax(draw(high).world[..., 2]) == pytest.approx(3 * np.nanmax(draw(low).world[..., 2]), abs=0.01)
+    assert np.nanmax(draw(high).world[..., 2]) == pytest.approx(
+        3 * np.nanmax(draw(low).world[..., 2]), abs=0.01
+    )
 
 
 def test_relief_may_change_between_pictures() -> None:
@@ -327,11 +329,30 @@ def test_packed_files_are_read_like_others(tmp_path: Path) -> None:
         scene.add_polygons(path)
 
 
+def test_packed_rasters_are_read_like_others(tmp_path: Path) -> None:
+    import gzip
+
+    import rasterio
+
+    heights = np.arange(12, dtype=np.float32).reshape(3, 4)
+    plain, packed = tmp_path / "dem.tif", tmp_path / "dem.tif.gz"
+    place = rasterio.transform.from_origin(0, 0, 30, 30)
+    profile = {"driver": "GTiff", "width": 4, "height": 3, "count": 1, "dtype": "float32", "transform": place}
+    with rasterio.open(plain, "w", **profile) as raster:
+        raster.write(heights, 1)
+    packed.write_bytes(gzip.compress(plain.read_bytes()))
+    np.testing.assert_array_equal(dg.Terrain.open(packed).z, heights)
+    with pytest.raises(dg.FileError, match=r"There is no file .*absent\.tif\.gz"):
+        dg.Terrain.open(tmp_path / "absent.tif.gz")
+
+
 def test_bombs_are_not_unpacked_to_the_end(tmp_path: Path) -> None:
     import gzip
 
     bomb = tmp_path / "bomb.geojson.gz"
-    bomb.write_bytes(gzip.compress(b'{"type": "FeatureCollection", "features": []' + b" " * (80 << 20) + b"}"))
+    bomb.write_bytes(
+        gzip.compress(b'{"type": "FeatureCollection", "features": []' + b" " * (80 << 20) + b"}")
+    )
     scene = flat_scene()
     with pytest.raises(dg.FileError, match=r"bomb.* unpacks to more than 64 MiB.*gunzip"):
         scene.add_polygons(bomb)

@@ -1,8 +1,8 @@
 """How far a renderer's pictures are from the reference, in numbers that tests bound and benchmarks report.
 
-    positions   against the pixels' centres and against what the reference's rays hit
-    ids         at the renderer's own positions, and at the reference's
-    overlay     premultiplied colour and coverage, told from two pictures: over black ground and over white
+positions   against the pixels' centres and against what the reference's rays hit
+ids         at the renderer's own positions, and at the reference's
+overlay     premultiplied colour and coverage, told from two pictures: over black ground and over white
 """
 
 from __future__ import annotations
@@ -25,7 +25,11 @@ if TYPE_CHECKING:
 
 # Pixels. The rasteriser snaps corners to 1/256, so that a centre this close to a silhouette may see past it.
 SNAP = 0.01
-AROUND = SNAP * np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)])
+AROUND = [
+    (SNAP * share * x, SNAP * share * y)
+    for share in (0.1, 0.25, 0.5, 1.0)
+    for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
+]
 # Of a pixel's footprint, and metres: how exact positions are.
 SHARE, LEAST = 0.01, 1e-5
 BLACK = dg.Relief(color="black", strength=0.0)
@@ -38,18 +42,16 @@ class Positions:
 
     projected: largest distance from a pixel's centre of its position projected back, pixels.
     surface: largest distance from what the reference sees there, over what is allowed: `SHARE` of the footprint,
-        at least `LEAST` metres. Where that is another surface (a silhouette), from the nearest one that is seen
-        within `SNAP` pixels.
+        at least `LEAST` metres. Where that is another surface (a silhouette), from one that is seen within `SNAP`
+        pixels; infinite where there is none.
     depth: the largest difference of depth, over the same and half a unit in its last place.
-    silhouettes: pixels that show another surface, or sky, than the reference does.
-    unexplained: of these, the ones that show what is not seen within `SNAP` pixels either.
+    silhouettes: pixels that show another surface, or sky, than the reference does; `other` marks them.
     """
 
     projected: float
     surface: float
     depth: float
     silhouettes: int
-    unexplained: int
     other: BoolArray
 
 
@@ -62,7 +64,9 @@ class Ids:
     farthest: float
 
 
-def draw(renderer: dg.Renderer, view: View, antialias: str = "none", relief: dg.Relief | None = None) -> dg.Frame:
+def draw(
+    renderer: dg.Renderer, view: View, antialias: str = "none", relief: dg.Relief | None = None
+) -> dg.Frame:
     """A frame of the view at its size; relief: another look of the bare terrain."""
     renderer.set_picture(view.size, antialias)
     renderer.preprocess(view.scene if relief is None else repainted(view.scene, relief))
@@ -75,8 +79,8 @@ def centres_of(view: View) -> FloatArray:
     return ref.pixel_centres((0, 0, *view.size))
 
 
-def footprint(view: View, points: FloatArray, seen: ref.Surface) -> FloatArray:
-    """The longer side (n,) of a pixel on the surface's tangent plane, metres in space, at points (n, 2)."""
+def _sides(view: View, points: FloatArray, seen: ref.Surface) -> tuple[FloatArray, FloatArray]:
+    """What a pixel to the right and one down are on the surface's tangent plane, metres in space, both (n, 3)."""
     origin, direction = view.camera.rays(points, view.size)
     normal = np.concatenate([-seen.gradient, np.ones((len(points), 1))], axis=1)
     sides = []
@@ -85,8 +89,14 @@ def footprint(view: View, points: FloatArray, seen: ref.Surface) -> FloatArray:
         with np.errstate(invalid="ignore", divide="ignore"):
             move = (beside - origin) + seen.depth[:, None] * (turned - direction)
             slip = (move * normal).sum(axis=1) / (direction * normal).sum(axis=1)
-            sides.append(np.linalg.norm(move - slip[:, None] * direction, axis=1))
-    longest: FloatArray = np.maximum(*sides)
+            sides.append(move - slip[:, None] * direction)
+    return sides[0], sides[1]
+
+
+def footprint(view: View, points: FloatArray, seen: ref.Surface) -> FloatArray:
+    """The longer side (n,) in metres of a pixel at points (n, 2) on the surface's tangent plane."""
+    right, down = _sides(view, points, seen)
+    longest: FloatArray = np.maximum(np.linalg.norm(right, axis=1), np.linalg.norm(down, axis=1))
     return longest
 
 
@@ -107,33 +117,46 @@ def judge_positions(view: View, frame: dg.Frame, seen: ref.Surface) -> Positions
     points = centres_of(view)
     world, depth = frame.world.reshape(-1, 3), frame.depth.reshape(-1).astype(np.float64)
     hit = np.isfinite(depth)
-    back, _ = view.camera.project(world[hit], view.size) if hit.any() else (points[hit], None)
+    back = view.camera.project(world[hit], view.size)[0]
     projected = np.linalg.norm(back - points[hit], axis=1).max(initial=0.0)
 
     excess = _excess(view, points, world, seen)
     at = np.flatnonzero(excess > 1.0)
-    near = excess[at]
-    for offset in AROUND:
-        moved = points[at] + offset
-        beside = ref.raycast(view.scene, view.camera, view.size, moved)
-        # The nearest surface is a pixel's hundredth aside: the footprint's share again.
-        near = np.minimum(near, np.maximum(_excess(view, moved, world[at], beside) - 1.5, 0.0))
+    silhouettes = _silhouette_excess(view, points[at], world[at], depth[at])
     same = hit & (excess <= 1.0)
     with np.errstate(invalid="ignore"):
         slack = np.maximum(LEAST, SHARE * footprint(view, points, seen)) + np.spacing(frame.depth.reshape(-1)) / 2
         off = np.abs(depth - seen.depth) / slack
     return Positions(
         projected=float(projected),
-        surface=float(max(excess[same].max(initial=0.0), near[np.isfinite(near)].max(initial=0.0))),
+        surface=max(float(excess[same].max(initial=0.0)), float(silhouettes.max(initial=0.0))),
         depth=float(off[same].max(initial=0.0)),
         silhouettes=len(at),
-        unexplained=int((near > 1.0).sum()),
         other=(excess > 1.0).reshape(frame.depth.shape),
     )
 
 
+def _silhouette_excess(view: View, points: FloatArray, world: FloatArray, depth: FloatArray) -> FloatArray:
+    """What is over the allowed distance (n,) from a surface that is seen within `SNAP` of points (n, 2); inf: none."""
+    nearest, farthest = np.full(len(points), np.inf), np.zeros(len(points))
+    least = np.full(len(points), np.inf)
+    for offset in AROUND:
+        beside = ref.raycast(view.scene, view.camera, view.size, points + offset)
+        nearest, farthest = np.minimum(nearest, beside.depth), np.maximum(farthest, beside.depth)
+        # What is hit a pixel's hundredth aside lies a hundredth of a footprint away.
+        least = np.minimum(least, np.maximum(_excess(view, points + offset, world, beside) - 1.5, 0.0))
+    height, gradient = surface_below(view.scene, world[:, :2])
+    own = ref.Surface(np.column_stack([world[:, :2], height]), depth, gradient)
+    between = (nearest <= depth + LEAST) & (depth <= farthest + LEAST)
+    return np.where(between, np.fmin(least, _excess(view, points, world, own)), least)
+
+
 def judge_ids(
-    view: View, frame: dg.Frame, seen: ref.Surface, tolerance: float | FloatArray, ignore: BoolArray | None = None
+    view: View,
+    frame: dg.Frame,
+    seen: ref.Surface,
+    tolerance: float | FloatArray,
+    ignore: BoolArray | None = None,
 ) -> Ids:
     """How right ids are. seen: positions to judge them at, (height, width); tolerance: metres from an edge."""
     expected = ref.render_ids(view.scene, view.camera, view.size, surface=seen, distances=False)
@@ -158,8 +181,11 @@ def overlay_of(renderer: dg.Renderer, view: View, antialias: str) -> FloatArray:
     return both
 
 
-def surface_height(scene: dg.Scene, xy: FloatArray) -> FloatArray:
-    """Height (n,) in metres of the full surface at map positions (n, 2): NaN beside it and in holes."""
+def surface_below(scene: dg.Scene, xy: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(height (n,), gradient (n, 2)) of the full surface at map positions (n, 2): NaN in holes and at NaN.
+
+    Beyond the terrain's edge the last triangles go on.
+    """
     terrain, heights = scene.terrain, scene.heights.astype(np.float64)
     rows, columns = heights.shape
     u = (xy[:, 0] - terrain.x0) / terrain.dx
@@ -169,10 +195,10 @@ def surface_height(scene: dg.Scene, xy: FloatArray) -> FloatArray:
     u, v = u - column, v - row
     northwest, northeast = heights[row, column], heights[row, column + 1]
     southwest, southeast = heights[row + 1, column], heights[row + 1, column + 1]
-    lower = northwest + v * (southwest - northwest) + u * (southeast - southwest)
-    upper = northwest + u * (northeast - northwest) + v * (southeast - northeast)
-    inside = (np.minimum(u, v) > -1e-6) & (np.maximum(u, v) < 1 + 1e-6)
-    return np.where(inside, np.where(v > u, lower, upper), np.nan)
+    east = np.where(v > u, southeast - southwest, northeast - northwest)
+    south = np.where(v > u, southwest - northwest, southeast - northeast)
+    gradient = np.column_stack([east / terrain.dx, -south / terrain.dy])
+    return northwest + u * east + v * south, gradient
 
 
 def terrain_errors(view: View, frame: dg.Frame) -> FloatArray:
@@ -180,7 +206,66 @@ def terrain_errors(view: View, frame: dg.Frame) -> FloatArray:
     world = frame.world.reshape(-1, 3)
     world = world[np.isfinite(world[:, 0])]
     full = world.copy()
-    full[:, 2] = surface_height(view.scene, world[:, :2])
+    full[:, 2] = surface_below(view.scene, world[:, :2])[0]
     drawn_at, _ = view.camera.project(world, view.size)
     full_at, _ = view.camera.project(full, view.size)
     return np.linalg.norm(drawn_at - full_at, axis=1)
+
+
+def rim_distance(view: View, frame: dg.Frame) -> FloatArray:
+    """How far (h, w) the surface at each pixel is from the terrain's outer rim on the map, in footprints."""
+    x0, y0, x1, y1 = view.scene.terrain.bounds
+    points, world = centres_of(view), frame.world.reshape(-1, 3)
+    _, gradient = surface_below(view.scene, world[:, :2])
+    across = footprint(view, points, ref.Surface(world, frame.depth.reshape(-1).astype(np.float64), gradient))
+    inside = np.minimum(world[:, :2] - (x0, y0), (x1, y1) - world[:, :2]).min(axis=1)
+    return (inside / across).reshape(frame.depth.shape)
+
+
+def folded(view: View, crop: Crop, seen: ref.Surface, samples: int) -> BoolArray:
+    """Pixels (h, w) of a crop whose area shows ground far from the tangent plane at their centre.
+
+    seen: `ref.sample_surface` of the crop. Far: some place of the pixel's area lies on the map where the plane's
+    picture has it a tenth of a pixel aside, as at the foot of a cliff or where facets are smaller than pixels.
+    """
+    height, width = seen.depth.shape[:2]
+    points = ref.sample_points(crop, samples).reshape(-1, 2)
+    centres = ref.pixel_centres(crop)
+    middle = ref.raycast(view.scene, view.camera, view.size, centres)
+    right, down = (np.repeat(side[:, :2], samples**2, axis=0) for side in _sides(view, centres, middle))
+    apart = (seen.world.reshape(-1, 3) - np.repeat(middle.world, samples**2, axis=0))[:, :2]
+    offset = points - np.repeat(centres, samples**2, axis=0)
+    area = right[:, 0] * down[:, 1] - right[:, 1] * down[:, 0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        x = (apart[:, 0] * down[:, 1] - apart[:, 1] * down[:, 0]) / area
+        y = (right[:, 0] * apart[:, 1] - right[:, 1] * apart[:, 0]) / area
+        off = np.hypot(x - offset[:, 0], y - offset[:, 1])
+    far: BoolArray = ~(off.reshape(height, width, -1) <= 0.1).all(axis=-1)
+    return far
+
+
+def busiest_crop(frame: dg.Frame, size: tuple[int, int]) -> Crop:
+    """The crop (x0, y0, x1, y1) of a size, among some, with the most borders between features."""
+    pictures = (frame.ids, frame.layers)
+    edges = sum((np.abs(np.diff(one, axis=0))[:, :-1] > 0) | (np.abs(np.diff(one, axis=1))[:-1] > 0) for one in pictures)
+    height, width = frame.ids.shape
+    wide, high = min(size[0], width), min(size[1], height)
+    corners = [
+        (x, y)
+        for y in range(0, height - high + 1, max(1, high // 2))
+        for x in range(0, width - wide + 1, max(1, wide // 2))
+    ]
+    x, y = max(corners, key=lambda at: int((edges[at[1] : at[1] + high, at[0] : at[0] + wide] > 0).sum()))
+    return (x, y, x + wide, y + high)
+
+
+def eroded(mask: BoolArray, pixels: int) -> BoolArray:
+    """A mask (h, w) without what lies within some pixels of its border."""
+    result = mask.copy()
+    for _ in range(pixels):
+        inner = np.zeros_like(result)
+        inner[1:-1, 1:-1] = result[1:-1, 1:-1]
+        for shift in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+            inner &= np.roll(result, shift, axis=(0, 1))
+        result = inner
+    return result

@@ -69,7 +69,9 @@ def waves(rows: int, columns: int, relief: float, seed: int = 1) -> NDArray[np.f
     return (heights * relief / 4.0).astype(np.float32)
 
 
-def hills_terrain(rows: int = 193, columns: int = 257, step: float = 10.0, relief: float = 150.0) -> dg.Terrain:
+def hills_terrain(
+    rows: int = 193, columns: int = 257, step: float = 10.0, relief: float = 150.0
+) -> dg.Terrain:
     """Hills around the origin, `step` metres between samples."""
     return dg.Terrain(
         waves(rows, columns, relief), -step * (columns - 1) / 2, step * (rows - 1) / 2, step, 0.9 * step
@@ -81,7 +83,9 @@ def flat_terrain(half: float, x: float = 0.0, y: float = 0.0) -> dg.Terrain:
     return dg.Terrain.flat((x - half, y - half, x + half, y + half))
 
 
-def _uneven_terrain(half: float, relief: float, x: float = 0.0, y: float = 0.0, samples: int = 33) -> dg.Terrain:
+def _uneven_terrain(
+    half: float, relief: float, x: float = 0.0, y: float = 0.0, samples: int = 33
+) -> dg.Terrain:
     step = 2.0 * half / (samples - 1)
     return dg.Terrain(waves(samples, samples, relief, seed=4), x - half, y + half, step, step)
 
@@ -196,11 +200,14 @@ def add_stars(scene: dg.Scene, reach: float, count: int) -> None:
 def nested_rings(x: float, y: float, radius: float, depth: int) -> list[FloatArray]:
     """Rings inside one another: every second one is a hole."""
     return [
-        circle(x, y, radius * (depth - i) / depth, 16, 0.1 * i)[:: 1 if i % 2 == 0 else -1] for i in range(depth)
+        circle(x, y, radius * (depth - i) / depth, 16, 0.1 * i)[:: 1 if i % 2 == 0 else -1]
+        for i in range(depth)
     ]
 
 
-def add_walks(scene: dg.Scene, reach: float, count: int, width: Any, alpha: float = 1.0, seed: int = 41) -> None:
+def add_walks(
+    scene: dg.Scene, reach: float, count: int, width: Any, alpha: float = 1.0, seed: int = 41
+) -> None:
     """Winding lines that start anywhere."""
     generator = np.random.default_rng(seed)
     found = [walk(generator, generator.uniform(-reach, reach, 2), reach / 40, 25) for _ in range(count)]
@@ -244,7 +251,7 @@ def repainted(scene: dg.Scene, relief: dg.Relief) -> dg.Scene:
 # Ordinary scenes
 
 
-def _from_examples(name: str) -> Any:
+def examples(name: str) -> Any:
     """A module of the examples folder."""
     if str(EXAMPLES) not in sys.path:
         sys.path.insert(0, str(EXAMPLES))
@@ -254,14 +261,14 @@ def _from_examples(name: str) -> Any:
 @functools.cache
 def honolulu_scene() -> dg.Scene:
     """The scene that the demo draws."""
-    scene: dg.Scene = _from_examples("demo").build_scene()
+    scene: dg.Scene = examples("demo").build_scene()
     return scene
 
 
 @_named
 def honolulu() -> View:
     """The demo's own view."""
-    place = _from_examples("honolulu")
+    place = examples("honolulu")
     return View(honolulu_scene(), dg.Camera.look_at(place.EYE, place.TARGET, fov=place.FIELD_OF_VIEW), SIZE)
 
 
@@ -447,7 +454,9 @@ def larger_than_the_map() -> View:
     """A polygon and lines of a thousand times the map, a line wider than it, and a millimetre's worth of detail."""
     scene = dg.Scene(_uneven_terrain(500.0, 30.0))
     far = 5e5
-    scene.add_polygons(rings([[np.array([(-far, -far), (far, -0.9 * far), (0.3, 90.0), (-0.8 * far, far)])]]), color="teal")
+    scene.add_polygons(
+        rings([[np.array([(-far, -far), (far, -0.9 * far), (0.3, 90.0), (-0.8 * far, far)])]]), color="teal"
+    )
     wide = np.array([(-far, -far - 200.0), (far, far - 200.0)])
     scene.add_lines(lines([wide]), width=300.0, width_units="m", color="gold")
     beyond = np.array([(1600.0, -900.0), (1900.0, 1400.0)])
@@ -467,7 +476,9 @@ def zero_lengths() -> View:
     for i in range(60):
         point = generator.uniform(-40.0, 40.0, 2)
         repeats = 1 + i % 4
-        found.append(np.repeat(point[None], repeats, axis=0) + (i % 3 == 2) * generator.uniform(0, 1e-7, (repeats, 2)))
+        found.append(
+            np.repeat(point[None], repeats, axis=0) + (i % 3 == 2) * generator.uniform(0, 1e-7, (repeats, 2))
+        )
     widths = np.geomspace(0.05, 12.0, 60)
     scene.add_lines(lines(found), width=widths, width_units="m", color=tints(60, 98))
     return View(scene, dg.Camera.orbit((0.0, 0.0, 0.0), 70.0, 30.0, 55.0), SIZE)
@@ -480,7 +491,9 @@ def nested_holes() -> View:
     places = [(x, y) for x in (-70.0, 0.0, 70.0) for y in (-70.0, 0.0, 70.0)]
     features = [nested_rings(x, y, 34.0, 10) for x, y in places]
     bow_tie = np.array([(-110.0, -110.0), (-60.0, -60.0), (-60.0, -110.0), (-110.0, -60.0)])
-    touching = np.array([(0.0, 100.0), (20.0, 110.0), (0.0, 118.0), (0.0, 100.0), (-20.0, 118.0), (-20.0, 104.0)])
+    touching = np.array(
+        [(0.0, 100.0), (20.0, 110.0), (0.0, 118.0), (0.0, 100.0), (-20.0, 118.0), (-20.0, 104.0)]
+    )
     square = np.array([(80.0, 80.0), (110.0, 80.0), (110.0, 110.0), (80.0, 110.0)])
     features += [[bow_tie], [touching], [square, square + 10.0, square + 10.0, square + 5.0]]
     scene.add_polygons(rings(features), color=tints(len(features), 99))
@@ -495,7 +508,9 @@ def slivers() -> View:
     for i, width in enumerate(np.geomspace(3.0, 1e-4, 90)):
         angle = 2.0 * np.pi * i / 90
         along, aside = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-        features.append([np.array([10.0 * along, 560.0 * along + width * aside, 560.0 * along - width * aside])])
+        features.append(
+            [np.array([10.0 * along, 560.0 * along + width * aside, 560.0 * along - width * aside])]
+        )
     scene.add_polygons(rings(features), color=tints(90, 100))
     return View(scene, dg.Camera.orbit((0.0, 0.0, 0.0), 1100.0, 170.0, 50.0), SIZE)
 
@@ -511,5 +526,7 @@ def crowd() -> View:
     corners = places[:, None] + generator.uniform(0.05, 0.5, (10_000, 1, 1)) * triangle
     scene.add_polygons((corners.reshape(-1, 2), 3 * np.arange(10_001)), color=tints(10_000, 102, 0.02))
     ends = generator.uniform(-0.6, 0.6, (20_000, 2))
-    scene.add_lines((ends, 2 * np.arange(10_001)), width=0.02, width_units="m", color=tints(10_000, 103, 0.05))
+    scene.add_lines(
+        (ends, 2 * np.arange(10_001)), width=0.02, width_units="m", color=tints(10_000, 103, 0.05)
+    )
     return View(scene, dg.Camera.top_down((-16.0, -9.0, 16.0, 9.0)), (32, 18))

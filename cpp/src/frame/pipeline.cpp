@@ -15,6 +15,9 @@ namespace {
 
 constexpr int largest_rectangle = 4096;
 
+// Mesa's software rasteriser ends the loops of one shader run after 65,535 turns in all.
+constexpr uint64_t software_shader_steps = 65535;
+
 gl::Backend backend_named(const std::string& name) {
     if (name == "auto")
         return gl::Backend::automatic;
@@ -93,10 +96,12 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     choose_rectangles();
     make_targets();
     UpdateReport report;
+    report.shader_steps = context_->info().software ? software_shader_steps : 0;
     for (const auto& technique : techniques_) {
         const UpdateReport part = technique->update(view_);
         report.pieces += part.pieces;
         report.bytes += part.bytes;
+        report.longest_walk = std::max(report.longest_walk, part.longest_walk);
     }
     return report;
 }

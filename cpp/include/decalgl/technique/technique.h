@@ -80,7 +80,9 @@ struct GBufferView {
 
 struct UpdateReport {
     uint64_t pieces = 0;
-    uint64_t bytes = 0;  // of GL memory held by the technique
+    uint64_t bytes = 0;         // of GL memory held by the technique
+    uint64_t shader_steps = 0;  // the most a shader of this driver can take for one pixel; 0: no limit
+    uint64_t longest_walk = 0;  // the most pieces that one point of a pixel has to look at
 };
 
 class Technique {

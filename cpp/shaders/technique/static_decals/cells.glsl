@@ -21,17 +21,20 @@ struct CellPosition {
     vec2 local;  // quanta from the cell's lower left corner
 };
 
+// The last place in a cell that stays in it when COORDINATE_BIAS is added in float32.
+const float last_in_cell = float(CELL_QUANTA) - 1.0 / 128.0;
+
 CellPosition locate(Position position) {
     float block_size = base_offset.z;
     if (cell_shift >= 0) {
         ivec2 inside = position.block & ((1 << cell_shift) - 1);
         return CellPosition((position.block >> cell_shift) - first_cell,
-                            (vec2(inside) * block_size + position.offset) * quanta_per_metre);
+                            min((vec2(inside) * block_size + position.offset) * quanta_per_metre, last_in_cell));
     }
     vec2 quanta = position.offset * quanta_per_metre;
     vec2 steps = floor(quanta / float(CELL_QUANTA));
     return CellPosition((position.block << -cell_shift) + ivec2(steps) - first_cell,
-                        quanta - steps * float(CELL_QUANTA));
+                        min(quanta - steps * float(CELL_QUANTA), last_in_cell));
 }
 
 // The texels of a cell: first and one past the last. Outside the grid there are none.

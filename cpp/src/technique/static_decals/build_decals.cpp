@@ -1,9 +1,10 @@
 // From layers to a cell stream, on all cores and with the same bytes on any number of them:
 //
-//   slots     features in draw order, topmost first, cut into runs of about the same number of vertices
-//   records   each run on its own: pieces with their cell and slot, sorted into buckets of cells while in the
-//   cache stream    each bucket on its own: its records of all runs, in order, in two passes that count and
-//   then write
+//   slots     features in draw order, topmost first, cut into runs of about as many vertices
+//   records   each run on its own: pieces with their cell and slot, sorted into buckets of
+//             cells while they are in the cache
+//   stream    each bucket on its own: its records of all runs, in order, in two passes that
+//             count and then write
 //
 // A scatter straight into cells would miss the cache on every record.
 #include <algorithm>
@@ -36,6 +37,14 @@ const Layer& layer_of(const TechniqueInput& input, FeatureReference slot) {
     return input.layers[slot.layer - input.first_layer];
 }
 
+// A ring of n vertices has n edges, a line of n vertices n - 1 segments.
+uint64_t segments_of(const Features& features, size_t feature) {
+    const uint64_t vertices = features.vertices(feature).size() / 2;
+    const auto parts =
+        static_cast<uint64_t>(features.feature_offsets[feature + 1] - features.feature_offsets[feature]);
+    return features.kind == FeatureKind::polygons ? vertices : vertices - std::min(parts, vertices);
+}
+
 void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
     for (size_t l = input.layers.size(); l-- > 0;) {
         const Layer& layer = input.layers[l];
@@ -47,9 +56,9 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
                 continue;
             DecalStyle style{{color[0], color[1], color[2], color[3]}, 0.0F};
             if (lines) {
-                const double half_width = 0.5 * layer.width(feature) / decals.grid.quantum;
-                style.half_width = static_cast<float>(half_width);
-                decals.largest_scale = std::max(decals.largest_scale, line_scale(half_width));
+                style.half_width = static_cast<float>(0.5 * layer.width(feature) / decals.grid.quantum);
+                decals.largest_scale =
+                    std::max(decals.largest_scale, line_scale(static_cast<double>(style.half_width)));
                 decals.widest = std::max(decals.widest, style.half_width);
                 decals.narrowest =
                     decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
@@ -57,6 +66,7 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
             decals.slots.push_back(
                 {input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
             decals.styles.push_back(style);
+            decals.segments += segments_of(layer.features, feature);
             decals.has_translucency |= color[3] != 255;
             (lines ? decals.has_lines : decals.has_polygons) = true;
         }
@@ -114,13 +124,19 @@ CellRecords make_records(const TechniqueInput& input, const PreparedDecals& deca
 }
 
 std::vector<CellRecords> make_all_records(const TechniqueInput& input, const PreparedDecals& decals,
-                                          const std::vector<Run>& runs, Progress& progress) {
+                                          const std::vector<Run>& runs, std::vector<MemoryCharge>& charges,
+                                          Progress& progress) {
     std::vector<CellRecords> all(runs.size(), CellRecords(decals.grid));
+    charges.resize(runs.size());
     parallel_for(
         runs.size(), 1, input.threads,
         [&](size_t begin, size_t end) {
-            for (size_t run = begin; run < end; ++run)
+            for (size_t run = begin; run < end; ++run) {
+                charges[run] = MemoryCharge(input.memory, "static: working memory",
+                                            2 * runs[run].vertices * sizeof(CellRecord));
                 all[run] = make_records(input, decals, runs[run]);
+                charges[run].resize(all[run].size() * sizeof(CellRecord));
+            }
         },
         [&](double share) { progress.report(0.7 * share); });
     return all;
@@ -129,6 +145,10 @@ std::vector<CellRecords> make_all_records(const TechniqueInput& input, const Pre
 void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& runs, PreparedDecals& decals,
                   Progress& progress) {
     const uint32_t bucket_count = decals.grid.bucket_count();
+    const uint64_t fixed_bytes =
+        (uint64_t{bucket_count} * BUCKET_CELLS + 1) * sizeof(uint32_t) +
+        decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference));
+    decals.charge.resize(fixed_bytes);
     decals.cell_starts.resize(size_t{bucket_count} * BUCKET_CELLS + 1);
     std::vector<uint64_t> sizes(bucket_count);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
@@ -145,9 +165,9 @@ void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& r
     if (total > std::numeric_limits<uint32_t>::max())
         throw Error(ErrorKind::memory, "the static index would need " +
                                            format_bytes(total * sizeof(CellTexel)) +
-                                           ", more than one index can address; split the layers' data");
-    decals.charge.resize(total * sizeof(CellTexel) + decals.cell_starts.size() * sizeof(uint32_t) +
-                         decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference)));
+                                           ", more than one index can address; draw a smaller part of the map at once");
+    decals.charge.resize(total * sizeof(CellTexel) + fixed_bytes);
+    decals.longest_cell = *std::max_element(decals.cell_starts.begin(), decals.cell_starts.end() - 1);
     decals.texels.resize(total);
     progress.report(0.8);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
@@ -167,14 +187,11 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
     decals->grid = CellGrid::over(input.bounds, input.positions, choose_resolution(input));
     collect_slots(input, *decals);
     const std::vector<Run> runs = cut_into_runs(input, *decals);
-    for (const Run& run : runs)
-        decals->segments += run.vertices;
-
-    std::vector<CellRecords> records = make_all_records(input, *decals, runs, progress);
+    std::vector<MemoryCharge> working_memory;
+    const std::vector<CellRecords> records = make_all_records(input, *decals, runs, working_memory, progress);
     size_t record_count = 0;
     for (const CellRecords& run : records)
         record_count += run.size();
-    const MemoryCharge working(input.memory, "static: working memory", record_count * sizeof(CellRecord));
     write_stream(input, records, *decals, progress);
     decals->pieces = record_count;
     progress.report(1.0);

@@ -40,6 +40,7 @@ public:
     std::vector<FeatureReference> slots;  // topmost first
     uint64_t segments = 0;
     uint64_t pieces = 0;
+    uint32_t longest_cell = 0;  // texels
     int largest_scale = 0;
     float widest = 0.0F;  // half widths of lines, in quanta
     float narrowest = 0.0F;

@@ -3,9 +3,10 @@
 // What is inside is decided from a cell's lower left corner: walk up the left border to the pixel's height,
 // then right to the pixel, and count what is crossed.
 //
-//        +---------------------+        crossings on the left border: pieces that start there, below the
-//        pixel |        __/          |        crossings of the row: pieces left of the pixel o------/--->
-//        pixel    | |    _/               |
+//        +---------------------+      crossings on the left border:
+//        |        __/          |          pieces that start there, below the pixel
+//        o------/---> pixel    |      crossings of the row:
+//        |    _/               |          pieces left of the pixel
 //        +__/------------------+
 //      corner
 //

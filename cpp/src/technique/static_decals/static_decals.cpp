@@ -24,8 +24,11 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const Memory
 }
 
 UpdateReport StaticDecals::update(const View&) {
-    return {prepared_->pieces,
-            cell_starts_.buffer().bytes() + cell_texels_.buffer().bytes() + styles_.buffer().bytes()};
+    UpdateReport report;
+    report.pieces = prepared_->pieces;
+    report.bytes = cell_starts_.buffer().bytes() + cell_texels_.buffer().bytes() + styles_.buffer().bytes();
+    report.longest_walk = prepared_->longest_cell;
+    return report;
 }
 
 void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {

@@ -1,0 +1,117 @@
+"""The documentation is true where a test can tell: code blocks run, links lead somewhere, figures are the last ones."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+
+import decalgl as dg
+from small_scenes import flat_scene
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")])
+README = ROOT / "README.md"
+LINK = re.compile(r"\]\(([^)#\s]+)(#[^)]*)?\)")
+# What each area of the C++ may include beside itself; ARCHITECTURE.md shows the same.
+INCLUDES = {
+    "core": set(),
+    "vector": {"core"},
+    "terrain": {"core", "vector"},
+    "geo": {"core", "terrain"},
+    "gl": {"core"},
+    "technique": {"core", "vector", "gl"},
+    "frame": {"core", "vector", "terrain", "technique", "gl"},
+    "app": {"core", "terrain", "geo", "frame"},
+}
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """The fenced blocks of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder where the README's paths lead somewhere and pictures do no harm."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    return tmp_path
+
+
+def run(command: list[str], folder: Path) -> str:
+    outcome = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert outcome.returncode == 0, outcome.stderr
+    return outcome.stdout
+
+
+def test_the_python_example_of_the_readme(folder: Path) -> None:
+    (example,) = blocks(README, "python")
+    out = run([sys.executable, "-c", example], folder)
+    assert re.match(r".+, row \d+\n", out)
+    with Image.open(folder / "map.png") as picture:
+        assert picture.size == (1280, 720)
+
+
+def test_the_commands_of_the_readme(folder: Path) -> None:
+    (commands,) = blocks(README, "sh")
+    for line in commands.replace("\\\n", " ").splitlines():
+        program, command, *arguments = shlex.split(line)
+        assert program == "decalgl"
+        if command == "render":
+            arguments += ["--size", "96x54"]
+        run([sys.executable, "-m", "decalgl.cli", command, *arguments], folder)
+        if command == "render":
+            assert (folder / arguments[arguments.index("-o") + 1]).stat().st_size > 0
+
+
+def test_the_cpp_example_of_the_readme_is_the_installed_one() -> None:
+    (example,) = blocks(README, "cpp")
+    names = set(re.findall(r"#include <(decalgl/[^>]+)>", example))
+    assert names
+    assert all((ROOT / "cpp" / "include" / name).is_file() for name in names)
+
+
+def test_the_stages_by_hand() -> None:
+    (example,) = blocks(ROOT / "docs" / "python.md", "python")
+    names: dict[str, Any] = {"dg": dg, "scene": flat_scene()}
+    exec(example, names)
+    assert names["frame"].image.shape == (360, 640, 4)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=[str(page.relative_to(ROOT)) for page in PAGES])
+def test_links_lead_somewhere(page: Path) -> None:
+    targets = [target for target, _ in LINK.findall(page.read_text()) if "://" not in target]
+    missing = [target for target in targets if not (page.parent / target).exists()]
+    assert not missing
+
+
+def test_the_documentation_names_what_there_is() -> None:
+    text = (ROOT / "docs" / "python.md").read_text()
+    unnamed = [name for name in dg.__all__ if name.endswith("Error") and f"`{name}`" not in text]
+    assert not unnamed
+
+
+def test_figures_are_those_of_the_last_benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT))
+    docs: Any = importlib.import_module("bench.docs")
+    results = docs.read_results()
+    for page in docs.PAGES:
+        text = page.read_text()
+        assert docs.MARKED.search(text), page
+        assert docs.fill(text, results) == text, f"{page}: run python -m bench --docs"
+
+
+@pytest.mark.parametrize("area", INCLUDES)
+def test_includes_point_one_way(area: str) -> None:
+    allowed = {area, *INCLUDES[area]}
+    for root in ("include/decalgl", "src"):
+        for file in (ROOT / "cpp" / root / area).rglob("*.[ch]*"):
+            for found in re.findall(r'#include "(?:decalgl/)?([a-z]+)/', file.read_text()):
+                assert found in {*allowed, "shared"}, f"{file} includes {found}"
