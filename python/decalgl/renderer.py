@@ -6,7 +6,6 @@ scene ──▶ preprocess ──▶ update(camera) ──▶ render ──▶ F
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from . import _core
 from ._colors import colormap, parse_color
 from ._raster import check_memory
 from .camera import checked_size
-from .errors import CancelledError, DecalWarning, InputError, UnsupportedError
+from .errors import CancelledError, InputError, UnsupportedError, warn
 from .frame import Frame
 
 if TYPE_CHECKING:
@@ -190,12 +189,10 @@ class _ExceptionKeeper:
 def _warn_of_long_walks(report: dict[str, int], visits: int) -> None:
     """Some drivers end a shader that takes too long, and what lies lowest is then missing from a pixel."""
     if report["shader_steps"] and report["longest_walk"] * visits > report["shader_steps"]:
-        warnings.warn(
+        warn(
             f"One cell of the index holds {report['longest_walk']:,} pieces, and this driver's shaders stop after"
             f" {report['shader_steps']:,} steps: where that many features lie under one pixel, the lowest may be"
-            " missing. Look closer, leave features out, use antialias='none', or draw on a GPU.",
-            DecalWarning,
-            stacklevel=3,
+            " missing. Look closer, leave features out, use antialias='none', or draw on a GPU."
         )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import geopandas
 import matplotlib as mpl
 import numpy as np
@@ -18,26 +20,27 @@ from decalgl.features import Attributes, read_features
 mpl.use("Agg")
 
 
-def frame(**columns):
+def frame(**columns: Any) -> Any:
     count = len(next(iter(columns.values())))
     return geopandas.GeoDataFrame(columns, geometry=[box(i, 0, i + 1, 1) for i in range(count)])
 
 
-def attributes_of(data):
+def attributes_of(data: Any) -> Any:
     return read_features(data, "polygons", terrain_crs=None, layer_name="parks")[1]
 
 
-def as_bytes(*colors):
+def as_bytes(*colors: Any) -> Any:
     return np.rint(np.array([to_rgba(color) for color in colors]) * 255).astype(np.uint8)
 
 
-def geopandas_colors(data, **style):
+def geopandas_colors(data: Any, **style: Any) -> Any:
     """The fill of each row as GeoPandas draws it, found again by the polygons' places."""
     figure, axes = plt.subplots()
     try:
         data.plot(ax=axes, **style)
         figure.canvas.draw()
         colors = np.zeros((len(data), 4))
+        shapes: Any
         for shapes in axes.collections:
             rows = [int(path.vertices[:, 0].min()) for path in shapes.get_paths()]
             colors[rows] = shapes.get_facecolor()
@@ -66,7 +69,7 @@ def geopandas_colors(data, **style):
     ],
     ids=str,
 )
-def test_colors_are_those_of_geopandas(style):
+def test_colors_are_those_of_geopandas(style: Any) -> None:
     data = frame(
         height=[1.0, 2.0, 5.0, 9.0], kind=["wood", "park", "wood", "field"], flag=[True, False, True, True]
     )
@@ -77,14 +80,14 @@ def test_colors_are_those_of_geopandas(style):
     np.testing.assert_array_equal(coloring.colors, geopandas_colors(data, **style))
 
 
-def test_many_categories_take_longer_colormaps():
+def test_many_categories_take_longer_colormaps() -> None:
     assert resolve_colors(11, column=list("abcdefghijk")).cmap.name == "tab20"
     assert resolve_colors(30, column=[str(i) for i in range(30)]).cmap.name == "viridis"
     repeated = resolve_colors(12, column=list("abcdefghijkl"), cmap="tab10").colors
     np.testing.assert_array_equal(repeated[10:], repeated[:2])
 
 
-def test_missing_values_are_not_drawn_unless_given_a_look():
+def test_missing_values_are_not_drawn_unless_given_a_look() -> None:
     data = frame(height=[1.0, np.nan, 3.0])
     columns = attributes_of(data)
     plain = resolve_colors(3, columns, column="height")
@@ -102,14 +105,14 @@ def test_missing_values_are_not_drawn_unless_given_a_look():
     "values",
     [
         pd.Series([1, None, 3], dtype="Int64"),
-        pd.Series(pd.to_datetime(["2020-01-01", None, "2022-01-01"])),
-        pd.Series(pd.to_datetime(["2020-01-01", None, "2022-01-01"], utc=True)),
+        pd.Series(pd.to_datetime(["2020-01-01", "NaT", "2022-01-01"])),
+        pd.Series(pd.to_datetime(["2020-01-01", "NaT", "2022-01-01"], utc=True)),
         np.array([1, "NaT", 5], dtype="timedelta64[s]"),
         [1, None, 3.0],
     ],
     ids=["nullable", "dates", "utc", "durations", "list"],
 )
-def test_numbers_come_in_many_kinds(values):
+def test_numbers_come_in_many_kinds(values: Any) -> None:
     coloring = resolve_colors(3, column=values)
     assert coloring.kind == "continuous"
     assert coloring.missing == 1
@@ -117,14 +120,14 @@ def test_numbers_come_in_many_kinds(values):
 
 
 @pytest.mark.parametrize("empty", [None, np.nan, pd.NA], ids=["none", "nan", "NA"])
-def test_missing_texts(empty):
+def test_missing_texts(empty: Any) -> None:
     coloring = resolve_colors(3, column=["b", empty, "a"])
     assert coloring.kind == "categorical"
     assert coloring.labels == ("a", "b")
     assert coloring.colors[1, 3] == 0
 
 
-def test_categories_may_be_named_one_by_one():
+def test_categories_may_be_named_one_by_one() -> None:
     columns = attributes_of(frame(kind=["wood", "lake", "wood"]))
     coloring = resolve_colors(
         3, columns, column="kind", cmap={"lake": "#3366cc", "wood": "green", "road": "red"}, legend=True
@@ -137,7 +140,7 @@ def test_categories_may_be_named_one_by_one():
     np.testing.assert_array_equal(codes.colors, as_bytes("red", "blue"))
 
 
-def test_a_category_without_a_color_is_no_silent_gap():
+def test_a_category_without_a_color_is_no_silent_gap() -> None:
     columns = attributes_of(frame(kind=["wood", "lake"]))
     with pytest.raises(StyleError, match=r"'wood'.*Did you mean 'woods'"):
         resolve_colors(2, columns, column="kind", cmap={"lake": "blue", "woods": "green"})
@@ -145,34 +148,34 @@ def test_a_category_without_a_color_is_no_silent_gap():
     np.testing.assert_array_equal(rest.colors, as_bytes("grey", "blue"))
 
 
-def test_rows_pick_colors_but_not_the_scale():
+def test_rows_pick_colors_but_not_the_scale() -> None:
     coloring = resolve_colors(4, column=[0.0, 1.0, 2.0, 10.0], rows=np.array([2, 0]))
     full = resolve_colors(4, column=[0.0, 1.0, 2.0, 10.0])
     np.testing.assert_array_equal(coloring.colors, full.colors[[2, 0]])
     assert (coloring.vmin, coloring.vmax) == (0.0, 10.0)
 
 
-def test_color_tables_and_alphas_row_by_row():
+def test_color_tables_and_alphas_row_by_row() -> None:
     table = np.array([[255, 0, 0, 128], [1, 2, 3, 4]], dtype=np.uint8)
     np.testing.assert_array_equal(resolve_colors(2, color=table).colors, table)
     faded = resolve_colors(2, color=["red", "none"], alpha=[0.5, 1.0])
     np.testing.assert_array_equal(faded.colors, [[255, 0, 0, 128], [0, 0, 0, 0]])
 
 
-def test_values_that_are_all_missing_or_all_equal():
+def test_values_that_are_all_missing_or_all_equal() -> None:
     assert (resolve_colors(2, column=[np.nan, np.nan]).colors[:, 3] == 0).all()
     assert (resolve_colors(2, column=[5.0, 5.0]).colors == as_bytes(mpl.colormaps["viridis"](0.0))).all()
     assert resolve_colors(2, column=[None, None], categorical=True).labels == ()
     assert resolve_colors(0, column=np.zeros(0)).colors.shape == (0, 4)
 
 
-def test_infinite_values_take_the_ends_of_the_colormap():
+def test_infinite_values_take_the_ends_of_the_colormap() -> None:
     colors = resolve_colors(4, column=[-np.inf, 0.0, 1.0, np.inf]).colors
     np.testing.assert_array_equal(colors[0], colors[1])
     np.testing.assert_array_equal(colors[3], colors[2])
 
 
-def test_color_wins_over_column_with_a_warning():
+def test_color_wins_over_column_with_a_warning() -> None:
     with pytest.warns(DecalWarning, match="color= is used"):
         coloring = resolve_colors(2, color="red", column=[1, 2])
     assert coloring.kind == "single"
@@ -208,12 +211,12 @@ def test_color_wins_over_column_with_a_warning():
     ],
     ids=str,
 )
-def test_unusable_styles_are_refused(style, message):
+def test_unusable_styles_are_refused(style: Any, message: Any) -> None:
     with pytest.raises(StyleError, match=message):
         resolve_colors(3, **style)
 
 
-def test_unknown_columns_name_close_ones():
+def test_unknown_columns_name_close_ones() -> None:
     columns = attributes_of(frame(kind=["a"], height=[1.0]))
     with pytest.raises(ColumnError, match=r"'parks' has no column 'kinds'. Did you mean 'kind'") as caught:
         resolve_colors(1, columns, column="kinds")
@@ -223,7 +226,7 @@ def test_unknown_columns_name_close_ones():
         Attributes("lines", 3).raw("kind")
 
 
-def test_numbers_by_column_array_or_constant():
+def test_numbers_by_column_array_or_constant() -> None:
     columns = attributes_of(frame(width=[1, 2], name=["a", "b"]))
     np.testing.assert_array_equal(columns.numbers("width", "width"), [1.0, 2.0])
     np.testing.assert_array_equal(columns.numbers(3, "width"), [3.0, 3.0])

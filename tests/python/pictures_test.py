@@ -106,7 +106,8 @@ def test_pick_lists_what_lies_there(case: Case) -> None:
     some = np.random.default_rng(1).choice(len(x), 60)
     at = case.frame.world[y[some], x[some], :2]
     held = [ref.membership(layer, at, layer.colors[:, 3] > 0) for layer in layers]
-    for i in np.flatnonzero(ref.edge_distance(case.view.scene, at) > case.tolerance):
+    sure = ref.edge_distance(case.view.scene, at) > case.tolerance
+    for i in np.flatnonzero(sure).tolist():
         expected = [
             (layer, int(layers[layer].features.rows[feature]))
             for layer in reversed(range(len(layers)))
@@ -138,11 +139,13 @@ def test_without_antialiasing_a_pixel_is_the_composite_at_its_centre(case: Case)
         assert case.far_from_edges(wrong & (expected[..., 3] == 1.0)) == 0
 
 
-def test_coverage_is_the_mean_over_the_pixel(case: Case, request: pytest.FixtureRequest) -> None:
-    if case.name == "crowd":
-        reason = "Mesa's software rasteriser ends a shader's loops after 65,535 turns in all"
-        request.applymarker(pytest.mark.xfail(reason=reason, strict=True))
+def test_coverage_is_the_mean_over_the_pixel(case: Case) -> None:
     view = case.view
+    if case.name == "crowd":
+        # Mesa's software rasteriser ends a shader's loops after 65,535 turns in all: no picture without a word.
+        with pytest.warns(dg.DecalWarning, match="the lowest may be missing"):
+            judge.overlay_of(renderer(), view, "coverage")
+        return
     crop = judge.busiest_crop(case.frame, CROPS.get(case.name, SMALL_CROP))
     surface = ref.sample_surface(view.scene, view.camera, view.size, crop, SAMPLES)
     expected = ref.render_overlay(view.scene, view.camera, view.size, crop, SAMPLES, surface=surface)

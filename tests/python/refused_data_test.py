@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from typing import Any
 
 import geopandas
 import numpy as np
@@ -17,7 +18,7 @@ from vector_data import DONUT, UTM, assert_same, parks, read
 
 
 @pytest.fixture
-def frame():
+def frame() -> Any:
     return parks()
 
 
@@ -44,13 +45,13 @@ def frame():
         (geopandas.GeoDataFrame({"a": [1]}), "polygons", "no active geometry"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused(data, kind, message):
+def test_what_cannot_be_drawn_is_refused(data: Any, kind: Any, message: Any) -> None:
     with pytest.raises(InputError, match=message):
         read(data, kind)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_coordinates_that_are_no_numbers_name_their_feature(bad):
+def test_coordinates_that_are_no_numbers_name_their_feature(bad: Any) -> None:
     good = [[0, 0], [1, 0], [1, 1]]
     with pytest.raises(InputError, match=r"'parks' has 1 points with NaN or infinite.*row 2"):
         read(([*good, *good, [0, bad], [5, 5]], [0, 3, 6, 8]), "lines")
@@ -63,22 +64,22 @@ def test_coordinates_that_are_no_numbers_name_their_feature(bad):
         read(shapes)
 
 
-def test_coordinates_out_of_reach_are_refused():
+def test_coordinates_out_of_reach_are_refused() -> None:
     with pytest.raises(InputError, match=r"farther than 1e\+09 m.*row 1"):
         read(([[0, 0], [1, 1], [2e9, 0], [1, 1]], [0, 2, 4]), "lines")
 
 
-def wkb_table(blobs):
+def wkb_table(blobs: Any) -> Any:
     field = pa.field("shape", pa.binary(), metadata={b"ARROW:extension:name": b"geoarrow.wkb"})
     return pa.table([pa.array(blobs, pa.binary())], schema=pa.schema([field]))
 
 
-def nested_wkb(kind, depth):
+def nested_wkb(kind: Any, depth: Any) -> Any:
     return struct.pack("<BII", 1, kind, 1) * depth + struct.pack("<BIdd", 1, 1, 0, 0)
 
 
 @pytest.mark.parametrize("kind", [4, 5, 6, 7])
-def test_wkb_nested_without_end_never_reaches_a_parser(kind):
+def test_wkb_nested_without_end_never_reaches_a_parser(kind: Any) -> None:
     with pytest.raises(InputError, match="row 1"):
         read(wkb_table([shapely.to_wkb(DONUT), nested_wkb(kind, 100_000)]))
 
@@ -86,12 +87,12 @@ def test_wkb_nested_without_end_never_reaches_a_parser(kind):
 @pytest.mark.parametrize(
     "blob", [b"", b"\x01", b"\x01\x03\x00\x00\x00\xff\xff\xff\xff", b"\x01\x63\x00\x00\x00"]
 )
-def test_damaged_wkb_names_its_row(blob):
+def test_damaged_wkb_names_its_row(blob: Any) -> None:
     with pytest.raises(InputError, match="row 1"):
         read(wkb_table([shapely.to_wkb(DONUT), blob]))
 
 
-def test_large_multi_geometries_pass_the_guard():
+def test_large_multi_geometries_pass_the_guard() -> None:
     many = MultiPolygon([Polygon(box(i, 0, i + 0.5, 1).exterior) for i in range(500)])
     for options in ({}, {"byte_order": 0}, {"flavor": "iso", "include_srid": False}):
         for shape in (many, shapely.force_3d(many, 5)):
@@ -105,15 +106,15 @@ def test_large_multi_geometries_pass_the_guard():
 @pytest.mark.parametrize(
     "text", ["GEOMETRYCOLLECTION(" * 9 + ")" * 9, "MULTIPOLYGON" + "(" * 9, "COMPOUNDCURVE((0 0, 1 1))"]
 )
-def test_nested_wkt_is_refused(text):
+def test_nested_wkt_is_refused(text: Any) -> None:
     field = pa.field("shape", pa.string(), metadata={b"ARROW:extension:name": b"geoarrow.wkt"})
     with pytest.raises(InputError, match="row 0"):
         read(pa.table([pa.array([text])], schema=pa.schema([field])))
 
 
-def test_objects_nested_without_end_are_refused():
-    deep = {"type": "Point", "coordinates": [0, 0]}
-    coordinates = [0.0, 0.0]
+def test_objects_nested_without_end_are_refused() -> None:
+    deep: Any = {"type": "Point", "coordinates": [0, 0]}
+    coordinates: Any = [0.0, 0.0]
     for _ in range(100_000):
         deep = {"type": "GeometryCollection", "geometries": [deep]}
         coordinates = [coordinates]
@@ -130,7 +131,7 @@ def test_objects_nested_without_end_are_refused():
 
 
 @pytest.mark.parametrize("prefix", ["", "\ufeff", "  "])
-def test_json_files_nested_without_end_are_not_opened(tmp_path, prefix):
+def test_json_files_nested_without_end_are_not_opened(tmp_path: Any, prefix: Any) -> None:
     path = tmp_path / "deep.geojson"
     start = '{"type":"GeometryCollection","geometries":['
     path.write_text(prefix + start * 100_000 + "]}" * 100_000, encoding="utf-8")
@@ -138,7 +139,7 @@ def test_json_files_nested_without_end_are_not_opened(tmp_path, prefix):
         read(path)
 
 
-def test_brackets_in_texts_are_not_counted(frame, tmp_path):
+def test_brackets_in_texts_are_not_counted(frame: Any, tmp_path: Any) -> None:
     path = tmp_path / "texts.geojson"
     frame.assign(kind=['[{"' * 300, "\\", '\\"[']).to_file(path)
     assert len(read(path, crs=UTM)) == 3

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+from typing import Any
 
 import geopandas
 import numpy as np
@@ -19,14 +20,14 @@ from vector_data import DONUT, SHAPES, UTM, assert_same, parks, read
 
 
 @pytest.fixture
-def frame():
+def frame() -> Any:
     return parks()
 
 
 class Interface:
     """Something that is not shapely but has a __geo_interface__."""
 
-    def __init__(self, value):
+    def __init__(self, value: Any) -> None:
         self.__geo_interface__ = value
 
 
@@ -34,7 +35,7 @@ FILES = ("gpkg", "fgb", "geojson", "parquet", "feather")
 
 
 @pytest.mark.parametrize("suffix", FILES)
-def test_files_give_the_arrays_and_columns_of_their_frame(frame, tmp_path, suffix):
+def test_files_give_the_arrays_and_columns_of_their_frame(frame: Any, tmp_path: Any, suffix: Any) -> None:
     path = tmp_path / f"parks.{suffix}"
     if suffix in ("parquet", "feather"):
         getattr(frame, f"to_{suffix}")(path)
@@ -48,7 +49,7 @@ def test_files_give_the_arrays_and_columns_of_their_frame(frame, tmp_path, suffi
     assert_same(read(str(path), crs=UTM), table)
 
 
-def wkt_table(frame):
+def wkt_table(frame: Any) -> Any:
     fields = [pa.field("shape", pa.string(), metadata={b"ARROW:extension:name": b"geoarrow.wkt"})]
     return pa.table(
         [pa.array(shapely.to_wkt(frame.geometry.array, rounding_precision=-1))], schema=pa.schema(fields)
@@ -88,13 +89,13 @@ def wkt_table(frame):
         "wkt",
     ],
 )
-def test_every_kind_of_data_gives_the_same_arrays(frame, convert):
+def test_every_kind_of_data_gives_the_same_arrays(frame: Any, convert: Any) -> None:
     table = read(convert(frame), crs=UTM, own=UTM)
     drawn = frame if len(table) == 3 else frame.iloc[[0, 2]]
     assert_same(table, read(drawn, crs=UTM))
 
 
-def test_single_geometries_and_features():
+def test_single_geometries_and_features() -> None:
     for data in (
         DONUT,
         shapely.geometry.mapping(DONUT),
@@ -103,7 +104,7 @@ def test_single_geometries_and_features():
         assert_same(read(data), read([DONUT]))
 
 
-def test_properties_of_features_are_columns():
+def test_properties_of_features_are_columns() -> None:
     features = [
         {
             "type": "Feature",
@@ -118,7 +119,7 @@ def test_properties_of_features_are_columns():
     np.testing.assert_array_equal(columns.column("size"), [3, np.nan])
 
 
-def test_layers_in_another_crs_are_moved_with_one_log_line(frame, caplog):
+def test_layers_in_another_crs_are_moved_with_one_log_line(frame: Any, caplog: Any) -> None:
     degrees = frame.set_geometry(frame.translate(5e5, 2.3e6)).set_crs(UTM).to_crs("EPSG:4326")
     with caplog.at_level(logging.INFO, logger="decalgl"):
         table = read(degrees, crs=UTM)
@@ -128,7 +129,7 @@ def test_layers_in_another_crs_are_moved_with_one_log_line(frame, caplog):
     np.testing.assert_allclose(table.coords, read(frame.translate(5e5, 2.3e6), crs=UTM).coords, atol=1e-6)
 
 
-def test_layers_in_the_same_crs_are_left_alone(frame, caplog):
+def test_layers_in_the_same_crs_are_left_alone(frame: Any, caplog: Any) -> None:
     with caplog.at_level(logging.INFO, logger="decalgl"):
         assert_same(read(frame, crs=UTM), read(SHAPES))
     assert not caplog.records
@@ -145,12 +146,12 @@ def test_layers_in_the_same_crs_are_left_alone(frame, caplog):
         ([box(500, 100, 510, 110)], UTM, "EPSG:4326", "cannot show.*row 0"),
     ],
 )
-def test_crs_rules(data, terrain_crs, own, message):
+def test_crs_rules(data: Any, terrain_crs: Any, own: Any, message: Any) -> None:
     with pytest.raises(CrsError, match=message):
         read(data, crs=terrain_crs, own=own)
 
 
-def test_old_geojson_names_its_crs(frame):
+def test_old_geojson_names_its_crs(frame: Any) -> None:
     collection = {
         **frame.__geo_interface__,
         "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32604"}},
@@ -158,7 +159,7 @@ def test_old_geojson_names_its_crs(frame):
     assert_same(read(collection, crs=UTM), read(frame, crs=UTM))
 
 
-def test_files_that_cannot_be_read(tmp_path):
+def test_files_that_cannot_be_read(tmp_path: Any) -> None:
     with pytest.raises(FileError, match="There is no file"):
         read(tmp_path / "none.gpkg")
     broken = tmp_path / "broken.gpkg"
@@ -171,7 +172,7 @@ def test_files_that_cannot_be_read(tmp_path):
         read(broken)
 
 
-def test_files_with_several_layers_ask_for_one(frame, tmp_path):
+def test_files_with_several_layers_ask_for_one(frame: Any, tmp_path: Any) -> None:
     path = tmp_path / "two.gpkg"
     frame.to_file(path, layer="parks")
     frame.iloc[:1].to_file(path, layer="lakes")

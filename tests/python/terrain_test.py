@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from typing import Any
 
 import numpy as np
 import pyproj
@@ -23,7 +24,7 @@ METRES = Affine(10, 0, 1000, 0, -20, 5000)
 RAMP = np.arange(12, dtype=np.float32).reshape(3, 4)
 
 
-def write(path, bands, transform=METRES, crs=UTM, **profile):
+def write(path: Any, bands: Any, transform: Any = METRES, crs: Any = UTM, **profile: Any) -> Any:
     bands = np.asarray(bands)
     bands = bands[None] if bands.ndim == 2 else bands
     tags = {name: profile.pop(name) for name in ("scales", "offsets", "units") if name in profile}
@@ -38,15 +39,15 @@ def write(path, bands, transform=METRES, crs=UTM, **profile):
     return path
 
 
-def positions(terrain):
+def positions(terrain: Any) -> Any:
     rows, columns = np.indices(terrain.shape)
     return terrain.x0 + columns * terrain.dx, terrain.y0 - rows * terrain.dy
 
 
-def test_samples_lie_in_the_middle_of_cells(tmp_path):
+def test_samples_lie_in_the_middle_of_cells(tmp_path: Any) -> None:
     for terrain in (Terrain.open(write(tmp_path / "a.tif", RAMP)), Terrain.from_array(RAMP, METRES, UTM)):
         assert (terrain.x0, terrain.y0, terrain.dx, terrain.dy) == (1005, 4990, 10, 20)
-        assert terrain.bounds == (1005, 4950, 1035, 4990)
+        assert terrain.bounds == (1005.0, 4950.0, 1035.0, 4990.0)
         assert terrain.shape == (3, 4)
         assert terrain.crs == pyproj.CRS(UTM)
         np.testing.assert_array_equal(terrain.z, RAMP)
@@ -57,7 +58,7 @@ def test_samples_lie_in_the_middle_of_cells(tmp_path):
 
 @settings(max_examples=30, deadline=None)
 @given(st.sampled_from([-3.0, 3.0]), st.sampled_from([-5.0, 5.0]), st.integers(1, 4), st.integers(1, 4))
-def test_any_orientation_starts_in_the_north_west(step_x, step_y, rows, columns):
+def test_any_orientation_starts_in_the_north_west(step_x: Any, step_y: Any, rows: Any, columns: Any) -> None:
     z = np.arange(rows * columns, dtype=float).reshape(rows, columns)
     transform = Affine(step_x, 0, 100, 0, step_y, 200)
     terrain = Terrain.from_array(z, transform)
@@ -72,11 +73,11 @@ def test_any_orientation_starts_in_the_north_west(step_x, step_y, rows, columns)
             assert placed[transform @ (column + 0.5, row + 0.5)] == z[row, column]
 
 
-def test_six_numbers_are_a_transform():
+def test_six_numbers_are_a_transform() -> None:
     assert Terrain.from_array(RAMP, tuple(METRES)[:6]).bounds == Terrain.from_array(RAMP, METRES).bounds
 
 
-def test_the_callers_array_is_neither_changed_nor_shared():
+def test_the_callers_array_is_neither_changed_nor_shared() -> None:
     z = np.array([[1.0, -9999.0]], dtype=np.float32)
     terrain = Terrain.from_array(z, METRES, nodata=-9999)
     z[0, 0] = 7
@@ -85,14 +86,14 @@ def test_the_callers_array_is_neither_changed_nor_shared():
     assert np.isnan(terrain.z[0, 1])
 
 
-def test_holes_of_arrays():
+def test_holes_of_arrays() -> None:
     assert np.isnan(Terrain.from_array(np.ma.masked_equal(RAMP, 3), METRES).z[0, 3])
     assert np.isnan(Terrain.from_array(RAMP.astype(np.int16), METRES, nodata=5).z[1, 1])
     assert Terrain.from_array(RAMP, METRES).z[0, 3] == 3
     assert np.isnan(Terrain.from_array(np.where(RAMP == 2, np.nan, RAMP), METRES).z[0, 2])
 
 
-def test_holes_scale_offset_and_units_of_files(tmp_path):
+def test_holes_scale_offset_and_units_of_files(tmp_path: Any) -> None:
     whole = RAMP.astype(np.int16)
     terrain = Terrain.open(write(tmp_path / "a.tif", whole, nodata=4, scales=[0.5], offsets=[100.0]))
     assert np.isnan(terrain.z[1, 0])
@@ -105,11 +106,11 @@ def test_holes_scale_offset_and_units_of_files(tmp_path):
 
 
 @pytest.mark.parametrize("dtype", ["uint8", "int16", "uint16", "int32", "float32", "float64"])
-def test_sample_types(tmp_path, dtype):
+def test_sample_types(tmp_path: Any, dtype: Any) -> None:
     np.testing.assert_array_equal(Terrain.open(write(tmp_path / "a.tif", RAMP.astype(dtype))).z, RAMP)
 
 
-def test_bands_and_windows(tmp_path):
+def test_bands_and_windows(tmp_path: Any) -> None:
     path = write(tmp_path / "a.tif", np.stack([RAMP, RAMP * 2]))
     np.testing.assert_array_equal(Terrain.open(path, band=2).z, RAMP * 2)
     for window in ((1, 1, 2, 2), Window(1, 1, 2, 2)):
@@ -125,13 +126,13 @@ def test_bands_and_windows(tmp_path):
         Terrain.open(path, band=3)
 
 
-def test_other_formats(tmp_path):
+def test_other_formats(tmp_path: Any) -> None:
     square = Affine(10, 0, 1000, 0, -10, 5000)
     path = write(tmp_path / "a.asc", RAMP, transform=square, crs=None, driver="AAIGrid")
     np.testing.assert_array_equal(Terrain.open(path, crs=UTM).z, RAMP)
 
 
-def test_files_without_a_place_say_so(tmp_path):
+def test_files_without_a_place_say_so(tmp_path: Any) -> None:
     path = write(tmp_path / "a.tif", RAMP, transform=Affine.identity(), crs=None)
     with pytest.warns(DecalWarning, match="no georeference"):
         terrain = Terrain.open(path)
@@ -142,7 +143,7 @@ def test_files_without_a_place_say_so(tmp_path):
 # Warping
 
 
-def exact(function, terrain, source):
+def exact(function: Any, terrain: Any, source: Any) -> Any:
     """Heights of `function` of source coordinates at the terrain's samples."""
     back = pyproj.Transformer.from_crs(terrain.crs, source, always_xy=True)
     return function(*back.transform(*positions(terrain)))
@@ -151,7 +152,7 @@ def exact(function, terrain, source):
 @pytest.mark.parametrize(
     ("longitude", "latitude"), [(-157.9, 21.4), (179.999, -17.0), (-21.5, 64.6), (30, 89.0), (0, 0)]
 )
-def test_degrees_are_warped_to_a_metric_plane_around_the_centre(longitude, latitude):
+def test_degrees_are_warped_to_a_metric_plane_around_the_centre(longitude: Any, latitude: Any) -> Any:
     step = 1 / 1200
     transform = Affine(step, 0, longitude - 60.5 * step, 0, -step, latitude + 40.5 * step)
     rows, columns = np.mgrid[0:81, 0:121]
@@ -166,7 +167,7 @@ def test_degrees_are_warped_to_a_metric_plane_around_the_centre(longitude, latit
     assert terrain.dx == pytest.approx(step_x, rel=0.02)
     assert terrain.dy == pytest.approx(step_y, rel=0.02)
 
-    def height(lon, lat):
+    def height(lon: Any, lat: Any) -> Any:
         lon = longitude + (lon - longitude + 180) % 360 - 180
         return 100 + 2.0 * ((lon - longitude) / step + 60) + 3.0 * ((latitude - lat) / step + 40)
 
@@ -176,13 +177,14 @@ def test_degrees_are_warped_to_a_metric_plane_around_the_centre(longitude, latit
     np.testing.assert_allclose(terrain.z[inside], expected[inside], atol=0.01)
 
 
-def test_the_local_plane_is_rounded_to_a_ten_thousandth_of_a_degree():
+def test_the_local_plane_is_rounded_to_a_ten_thousandth_of_a_degree() -> None:
     terrain = Terrain.flat((-157.99999, 21.2, -157.84444, 21.33333), "EPSG:4326")
+    assert terrain.crs is not None
     assert "+proj=tmerc +lat_0=21.2667 +lon_0=-157.9222 " in terrain.crs.to_string() + " "
 
 
 @pytest.mark.parametrize("start", [-180.0, 0.0, 170.0])
-def test_poles_and_whole_turns(start):
+def test_poles_and_whole_turns(start: Any) -> None:
     step = 1.0
     transform = Affine(step, 0, start, 0, -step, 90)
     rows, _ = np.mgrid[0:8, 0:360]
@@ -195,7 +197,7 @@ def test_poles_and_whole_turns(start):
     assert inside[(latitude < 89.4) & (latitude > 82.6)].all(), "no seam where the turn closes"
 
 
-def test_holes_stay_holes():
+def test_holes_stay_holes() -> None:
     z = np.zeros((40, 40))
     z[20, 20] = np.nan
     step = 1 / 3600
@@ -209,14 +211,14 @@ def test_holes_stay_holes():
     assert np.isnan(terrain.z[beside]).all()
 
 
-def test_feet_become_metres():
+def test_feet_become_metres() -> None:
     foot = 1200 / 3937
     terrain = Terrain.from_array(np.zeros((30, 50)), Affine(100, 0, 980_000, 0, -100, 200_000), "EPSG:2263")
     assert terrain.dx == pytest.approx(100 * foot, rel=1e-3)
     assert terrain.bounds[2] - terrain.bounds[0] == pytest.approx(4900 * foot, rel=2e-2)
 
 
-def test_a_crs_can_be_asked_for(tmp_path):
+def test_a_crs_can_be_asked_for(tmp_path: Any) -> None:
     path = write(tmp_path / "a.tif", np.zeros((30, 50)), Affine(0.001, 0, -158, 0, -0.001, 21.5), "EPSG:4326")
     assert Terrain.open(path, crs=UTM).crs == pyproj.CRS(UTM)
     with pytest.raises(CrsError, match="not in metres"):
@@ -229,7 +231,7 @@ def test_a_crs_can_be_asked_for(tmp_path):
 
 
 @pytest.mark.parametrize("angle", [1.0, 30.0, 90.0, 135.0])
-def test_turned_rasters_are_set_upright(angle):
+def test_turned_rasters_are_set_upright(angle: Any) -> None:
     transform = Affine.translation(5e5, 2e6) @ Affine.rotation(angle) @ Affine.scale(10, -20)
     rows, columns = np.mgrid[0:30, 0:40]
     terrain = Terrain.from_array(columns + 100.0 * rows, transform, UTM)
@@ -243,7 +245,7 @@ def test_turned_rasters_are_set_upright(angle):
     np.testing.assert_allclose(sorted([terrain.dx, terrain.dy]), [10, 20], rtol=0.05)
 
 
-def test_extents_that_no_local_plane_holds_are_refused():
+def test_extents_that_no_local_plane_holds_are_refused() -> None:
     with pytest.raises(CrsError, match=r"does not fit.*crs="):
         Terrain.from_array(np.zeros((18, 36)), Affine(10, 0, -180, 0, -10, 90), "EPSG:4326")
     with pytest.raises(CrsError, match="no place on the globe"):
@@ -252,7 +254,7 @@ def test_extents_that_no_local_plane_holds_are_refused():
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 5), (4, 1)])
 @pytest.mark.parametrize("crs", [None, UTM, "EPSG:4326"])
-def test_single_samples_rows_and_columns_are_legal(shape, crs):
+def test_single_samples_rows_and_columns_are_legal(shape: Any, crs: Any) -> None:
     terrain = Terrain.from_array(np.full(shape, 7.0), Affine(0.1, 0, 10, 0, -0.1, 50), crs)
     assert terrain.shape == shape
     assert (terrain.z == 7).all()
@@ -261,15 +263,15 @@ def test_single_samples_rows_and_columns_are_legal(shape, crs):
 # Flat ground
 
 
-def test_flat_ground():
+def test_flat_ground() -> None:
     terrain = Terrain.flat((0, 10, 100, 30), height=5)
-    assert terrain.bounds == (0, 10, 100, 30)
+    assert terrain.bounds == (0.0, 10.0, 100.0, 30.0)
     assert terrain.shape == (2, 2)
     assert (terrain.z == 5).all()
     assert Terrain.flat((0, 0, 1, 1), UTM).crs == pyproj.CRS(UTM)
 
 
-def test_flat_ground_in_degrees_holds_all_of_its_bounds():
+def test_flat_ground_in_degrees_holds_all_of_its_bounds() -> None:
     terrain = Terrain.flat((-158, 21, -157, 22), "EPSG:4326")
     edge = np.linspace(0, 1, 200)
     forward = pyproj.Transformer.from_crs(4326, terrain.crs, always_xy=True)
@@ -282,7 +284,7 @@ def test_flat_ground_in_degrees_holds_all_of_its_bounds():
 
 
 @pytest.mark.parametrize("bounds", [(0, 0, 0, 1), (1, 0, 0, 1), (0, 0, math.nan, 1), (0, 0, 1), "abc", None])
-def test_bounds_of_flat_ground_are_checked(bounds):
+def test_bounds_of_flat_ground_are_checked(bounds: Any) -> None:
     with pytest.raises(InputError, match="bounds must be"):
         Terrain.flat(bounds)
     with pytest.raises(InputError, match="height"):
@@ -308,12 +310,12 @@ def test_bounds_of_flat_ground_are_checked(bounds):
         (RAMP, None, "six numbers"),
     ],
 )
-def test_unusable_arrays_are_refused(z, transform, message):
+def test_unusable_arrays_are_refused(z: Any, transform: Any, message: Any) -> None:
     with pytest.raises(InputError, match=message):
         Terrain.from_array(z, transform)
 
 
-def test_unreadable_files_are_refused(tmp_path):
+def test_unreadable_files_are_refused(tmp_path: Any) -> None:
     with pytest.raises(FileError, match="There is no file"):
         Terrain.open(tmp_path / "none.tif")
     path = tmp_path / "broken.tif"
@@ -326,7 +328,7 @@ def test_unreadable_files_are_refused(tmp_path):
         Terrain.open(path)
 
 
-def test_files_without_heights_are_refused(tmp_path):
+def test_files_without_heights_are_refused(tmp_path: Any) -> None:
     with pytest.raises(InputError, match=r"Band 1 of .*no finite height"):
         Terrain.open(write(tmp_path / "a.tif", np.full((2, 2), -1, dtype=np.int16), nodata=-1))
     with pytest.raises(InputError, match="complex64"):
@@ -335,7 +337,7 @@ def test_files_without_heights_are_refused(tmp_path):
         Terrain.open(write(tmp_path / "c.tif", np.full((2, 2), -1.7e308)))
 
 
-def sparse(path, side):
+def sparse(path: Any, side: Any) -> Any:
     profile = {
         "driver": "GTiff",
         "dtype": "float32",
@@ -351,7 +353,7 @@ def sparse(path, side):
     return path
 
 
-def test_a_small_file_that_declares_gigabytes_is_refused(tmp_path):
+def test_a_small_file_that_declares_gigabytes_is_refused(tmp_path: Any) -> None:
     path = sparse(tmp_path / "bomb.tif", 49_152)
     assert path.stat().st_size < 200_000
     with pytest.raises(MemoryLimitError, match=r"bomb.tif.*49152 x 49152.*9.0 GiB.*window=.*max_samples="):
@@ -360,7 +362,7 @@ def test_a_small_file_that_declares_gigabytes_is_refused(tmp_path):
         Terrain.open(path, crs=UTM)
 
 
-def test_an_empty_file_below_the_limit_is_refused_unless_it_is_meant(tmp_path):
+def test_an_empty_file_below_the_limit_is_refused_unless_it_is_meant(tmp_path: Any) -> None:
     path = sparse(tmp_path / "empty.tif", 8192)
     with pytest.raises(MemoryLimitError, match="nearly all of it is empty"):
         Terrain.open(path)
@@ -369,21 +371,21 @@ def test_an_empty_file_below_the_limit_is_refused_unless_it_is_meant(tmp_path):
         Terrain.open(path, max_samples=1000)
 
 
-def test_memory_that_is_not_there_is_not_asked_for(tmp_path, monkeypatch):
+def test_memory_that_is_not_there_is_not_asked_for(tmp_path: Any, monkeypatch: Any) -> None:
     path = write(tmp_path / "a.tif", RAMP)
     monkeypatch.setattr(_raster, "available_memory", lambda: 100)
     with pytest.raises(MemoryLimitError, match=r"a.tif.*100 bytes are available"):
         Terrain.open(path)
 
 
-def test_warps_that_grow_beyond_the_limit_are_refused(tmp_path):
+def test_warps_that_grow_beyond_the_limit_are_refused(tmp_path: Any) -> None:
     turned = Affine.rotation(45) @ Affine.scale(10, -10)
     path = write(tmp_path / "a.tif", np.zeros((30, 30)), turned)
     with pytest.raises(MemoryLimitError, match="max_samples=1000"):
         Terrain.open(path, max_samples=1000)
 
 
-def test_terrains_check_their_numbers():
+def test_terrains_check_their_numbers() -> None:
     with pytest.raises(InputError, match="steps positive"):
         Terrain(RAMP, 0, 0, -1, 1)
     with pytest.raises(InputError, match="at least one sample"):

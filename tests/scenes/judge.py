@@ -109,7 +109,8 @@ def _excess(view: View, points: FloatArray, world: FloatArray, seen: ref.Surface
         excess = np.linalg.norm(world - seen.world, axis=1) / allowed
     excess[sky | beside] = np.inf
     excess[sky & beside] = 0.0
-    return excess
+    over: FloatArray = excess
+    return over
 
 
 def judge_positions(view: View, frame: dg.Frame, seen: ref.Surface) -> Positions:
@@ -125,7 +126,8 @@ def judge_positions(view: View, frame: dg.Frame, seen: ref.Surface) -> Positions
     silhouettes = _silhouette_excess(view, points[at], world[at], depth[at])
     same = hit & (excess <= 1.0)
     with np.errstate(invalid="ignore"):
-        slack = np.maximum(LEAST, SHARE * footprint(view, points, seen)) + np.spacing(frame.depth.reshape(-1)) / 2
+        slack = np.maximum(LEAST, SHARE * footprint(view, points, seen))
+        slack += np.spacing(frame.depth.reshape(-1)) / 2
         off = np.abs(depth - seen.depth) / slack
     return Positions(
         projected=float(projected),
@@ -209,7 +211,8 @@ def terrain_errors(view: View, frame: dg.Frame) -> FloatArray:
     full[:, 2] = surface_below(view.scene, world[:, :2])[0]
     drawn_at, _ = view.camera.project(world, view.size)
     full_at, _ = view.camera.project(full, view.size)
-    return np.linalg.norm(drawn_at - full_at, axis=1)
+    errors: FloatArray = np.linalg.norm(drawn_at - full_at, axis=1)
+    return errors
 
 
 def rim_distance(view: View, frame: dg.Frame) -> FloatArray:
@@ -219,7 +222,8 @@ def rim_distance(view: View, frame: dg.Frame) -> FloatArray:
     _, gradient = surface_below(view.scene, world[:, :2])
     across = footprint(view, points, ref.Surface(world, frame.depth.reshape(-1).astype(np.float64), gradient))
     inside = np.minimum(world[:, :2] - (x0, y0), (x1, y1) - world[:, :2]).min(axis=1)
-    return (inside / across).reshape(frame.depth.shape)
+    distance: FloatArray = (inside / across).reshape(frame.depth.shape)
+    return distance
 
 
 def folded(view: View, crop: Crop, seen: ref.Surface, samples: int) -> BoolArray:
@@ -240,14 +244,14 @@ def folded(view: View, crop: Crop, seen: ref.Surface, samples: int) -> BoolArray
         x = (apart[:, 0] * down[:, 1] - apart[:, 1] * down[:, 0]) / area
         y = (right[:, 0] * apart[:, 1] - right[:, 1] * apart[:, 0]) / area
         off = np.hypot(x - offset[:, 0], y - offset[:, 1])
-    far: BoolArray = ~(off.reshape(height, width, -1) <= 0.1).all(axis=-1)
-    return far
+    near: BoolArray = (off.reshape(height, width, -1) <= 0.1).all(axis=-1)
+    return ~near
 
 
 def busiest_crop(frame: dg.Frame, size: tuple[int, int]) -> Crop:
     """The crop (x0, y0, x1, y1) of a size, among some, with the most borders between features."""
-    pictures = (frame.ids, frame.layers)
-    edges = sum((np.abs(np.diff(one, axis=0))[:, :-1] > 0) | (np.abs(np.diff(one, axis=1))[:-1] > 0) for one in pictures)
+    ids = frame.ids + 2**40 * frame.layers.astype(np.int64)
+    edges = (np.diff(ids, axis=0)[:, :-1] != 0) | (np.diff(ids, axis=1)[:-1] != 0)
     height, width = frame.ids.shape
     wide, high = min(size[0], width), min(size[1], height)
     corners = [
@@ -255,7 +259,7 @@ def busiest_crop(frame: dg.Frame, size: tuple[int, int]) -> Crop:
         for y in range(0, height - high + 1, max(1, high // 2))
         for x in range(0, width - wide + 1, max(1, wide // 2))
     ]
-    x, y = max(corners, key=lambda at: int((edges[at[1] : at[1] + high, at[0] : at[0] + wide] > 0).sum()))
+    x, y = max(corners, key=lambda at: int(edges[at[1] : at[1] + high, at[0] : at[0] + wide].sum()))
     return (x, y, x + wide, y + high)
 
 
@@ -263,7 +267,7 @@ def eroded(mask: BoolArray, pixels: int) -> BoolArray:
     """A mask (h, w) without what lies within some pixels of its border."""
     result = mask.copy()
     for _ in range(pixels):
-        inner = np.zeros_like(result)
+        inner: BoolArray = np.zeros_like(result)
         inner[1:-1, 1:-1] = result[1:-1, 1:-1]
         for shift in ((0, 1), (0, -1), (1, 0), (-1, 0)):
             inner &= np.roll(result, shift, axis=(0, 1))

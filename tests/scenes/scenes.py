@@ -114,7 +114,8 @@ def walk(generator: np.random.Generator, start: FloatArray, step: float, count: 
     """A winding line of `count` segments, (count + 1, 2)."""
     heading = generator.uniform(0.0, 2.0 * np.pi) + np.cumsum(generator.normal(0.0, 0.5, count))
     moves = step * np.stack([np.cos(heading), np.sin(heading)], axis=1)
-    return start + np.concatenate([np.zeros((1, 2)), np.cumsum(moves, axis=0)])
+    points: FloatArray = start + np.concatenate([np.zeros((1, 2)), np.cumsum(moves, axis=0)])
+    return points
 
 
 def partition(
@@ -462,7 +463,7 @@ def larger_than_the_map() -> View:
     beyond = np.array([(1600.0, -900.0), (1900.0, 1400.0)])
     scene.add_lines(lines([beyond]), width=3000.0, width_units="m", color="brown", alpha=0.5)
     generator = np.random.default_rng(96)
-    tiny = [[blob(generator, *generator.uniform(-2.0, 2.0, 2), 0.002)] for _ in range(50)]
+    tiny = [[blob(generator, x, y, 0.002)] for x, y in generator.uniform(-2.0, 2.0, (50, 2))]
     scene.add_polygons(rings(tiny), color="black")
     return View(scene, dg.Camera.orbit((0.0, 0.0, 0.0), 900.0, 200.0, 40.0), SIZE)
 

@@ -145,9 +145,8 @@ std::vector<CellRecords> make_all_records(const TechniqueInput& input, const Pre
 void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& runs, PreparedDecals& decals,
                   Progress& progress) {
     const uint32_t bucket_count = decals.grid.bucket_count();
-    const uint64_t fixed_bytes =
-        (uint64_t{bucket_count} * BUCKET_CELLS + 1) * sizeof(uint32_t) +
-        decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference));
+    const uint64_t fixed_bytes = (uint64_t{bucket_count} * BUCKET_CELLS + 1) * sizeof(uint32_t) +
+                                 decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference));
     decals.charge.resize(fixed_bytes);
     decals.cell_starts.resize(size_t{bucket_count} * BUCKET_CELLS + 1);
     std::vector<uint64_t> sizes(bucket_count);
@@ -163,9 +162,9 @@ void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& r
         size = start;
     }
     if (total > std::numeric_limits<uint32_t>::max())
-        throw Error(ErrorKind::memory, "the static index would need " +
-                                           format_bytes(total * sizeof(CellTexel)) +
-                                           ", more than one index can address; draw a smaller part of the map at once");
+        throw Error(ErrorKind::memory,
+                    "the static index would need " + format_bytes(total * sizeof(CellTexel)) +
+                        ", more than one index can address; draw a smaller part of the map at once");
     decals.charge.resize(total * sizeof(CellTexel) + fixed_bytes);
     decals.longest_cell = *std::max_element(decals.cell_starts.begin(), decals.cell_starts.end() - 1);
     decals.texels.resize(total);
