@@ -69,7 +69,7 @@ def summary(results: Results) -> str:
     ]
     header = ("scene", "view", "layers, `none`", "÷ floor", "layers, `coverage`", "terrain and compose")
     costs = [
-        f"- {one['scene']}: {one['segments']:,.0f} vertices are prepared in {one['preprocess_ms']:.0f} ms (the"
+        f"- {one['scene']}: {one['segments']:,.0f} segments are prepared in {one['preprocess_ms']:.0f} ms (the"
         f" terrain in {one['terrain_preprocess_ms']:.0f} ms) and take {one['bytes_per_segment']:.0f} bytes each;\n"
         f"  no vertex moves by more than {1000 * one['quantum_m']:.0f} mm."
         for one in _prepared(results)
@@ -108,12 +108,12 @@ def ratios(results: Results) -> str:
     drawn_header = ("scene", "view", "floor", "`none`", "S", "`coverage`", "AA", "empty")
     prepared_header = (
         "scene",
-        "vertices",
+        "segments",
         "pieces",
         "preprocess",
         "radix sort",
         "P",
-        "bytes a vertex",
+        "bytes a segment",
         "quantum",
     )
     tables = [_table(drawn_header, drawn, left=2), _table(prepared_header, prepared, left=1)]

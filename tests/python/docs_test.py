@@ -20,17 +20,6 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/**/*.md")])
 README = ROOT / "README.md"
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)]*)?\)")
-# What each area of the C++ may include beside itself; ARCHITECTURE.md shows the same.
-INCLUDES = {
-    "core": set(),
-    "vector": {"core"},
-    "terrain": {"core", "vector"},
-    "geo": {"core", "terrain"},
-    "gl": {"core"},
-    "technique": {"core", "vector", "gl"},
-    "frame": {"core", "vector", "terrain", "technique", "gl"},
-    "app": {"core", "terrain", "geo", "frame"},
-}
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -106,12 +95,3 @@ def test_figures_are_those_of_the_last_benchmark(monkeypatch: pytest.MonkeyPatch
         text = page.read_text()
         assert docs.MARKED.search(text), page
         assert docs.fill(text, results) == text, f"{page}: run python -m bench --docs"
-
-
-@pytest.mark.parametrize("area", INCLUDES)
-def test_includes_point_one_way(area: str) -> None:
-    allowed = {area, *INCLUDES[area]}
-    for root in ("include/decalgl", "src"):
-        for file in (ROOT / "cpp" / root / area).rglob("*.[ch]*"):
-            for found in re.findall(r'#include "(?:decalgl/)?([a-z]+)/', file.read_text()):
-                assert found in {*allowed, "shared"}, f"{file} includes {found}"

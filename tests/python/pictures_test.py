@@ -18,8 +18,8 @@ from scenes import View
 WITHOUT_GROUND = ("one_sample", "one_row")
 WITH_GROUND = [name for name in scenes.SCENES if name not in WITHOUT_GROUND]
 # Crops whose areas are judged; 256 rays a pixel take their time.
-CROPS = {"honolulu": (128, 72), "hills": (96, 54), "translucent": (96, 54)}
-SMALL_CROP = (64, 36)
+CROPS = {"honolulu": (112, 63), "hills": (80, 45), "translucent": (80, 45)}
+SMALL_CROP = (56, 32)
 SAMPLES = 16
 # Where many pixels see more than one plane: a pixel's area is taken to lie on the plane at its centre.
 FOLDED = ("coast", "grazing", "nodata_holes")
@@ -157,7 +157,7 @@ def test_coverage_is_the_mean_over_the_pixel(case: Case) -> None:
         assert found.rms <= 0.06, found
         ignored |= judge.folded(view, crop, surface, SAMPLES)
         found = ref.compare_overlay(got, expected, ignore=ignored)
-        assert found.partial > 80
+        assert found.partial > 50
     assert found.rms <= 0.03, found
 
 

@@ -244,7 +244,8 @@ def folded(view: View, crop: Crop, seen: ref.Surface, samples: int) -> BoolArray
         x = (apart[:, 0] * down[:, 1] - apart[:, 1] * down[:, 0]) / area
         y = (right[:, 0] * apart[:, 1] - right[:, 1] * apart[:, 0]) / area
         off = np.hypot(x - offset[:, 0], y - offset[:, 1])
-    near: BoolArray = (off.reshape(height, width, -1) <= 0.1).all(axis=-1)
+    # A place that sees sky has no number, and is far.
+    near: BoolArray = off.reshape(height, width, -1).max(axis=-1) <= 0.1
     return ~near
 
 
@@ -265,9 +266,9 @@ def busiest_crop(frame: dg.Frame, size: tuple[int, int]) -> Crop:
 
 def eroded(mask: BoolArray, pixels: int) -> BoolArray:
     """A mask (h, w) without what lies within some pixels of its border."""
-    result = mask.copy()
+    result: BoolArray = mask.copy()
     for _ in range(pixels):
-        inner: BoolArray = np.zeros_like(result)
+        inner = np.zeros_like(result)
         inner[1:-1, 1:-1] = result[1:-1, 1:-1]
         for shift in ((0, 1), (0, -1), (1, 0), (-1, 0)):
             inner &= np.roll(result, shift, axis=(0, 1))

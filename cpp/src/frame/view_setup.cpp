@@ -35,17 +35,11 @@ double half_height_at_unit_distance(const Camera& camera) {
 // views.
 double farthest_depth(const Camera& camera, const CameraBasis& basis, const Heightfield& terrain) {
     const Bounds bounds = terrain.bounds();
-    float lowest = std::numeric_limits<float>::max();
-    float highest = std::numeric_limits<float>::lowest();
-    for (const float height : terrain.heights()) {
-        lowest = std::fmin(lowest, height);
-        highest = std::fmax(highest, height);
-    }
     double depth = 1.0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 point(corner & 1 ? bounds.max_x : bounds.min_x,
                                corner & 2 ? bounds.max_y : bounds.min_y,
-                               static_cast<double>(corner & 4 ? highest : lowest));
+                               static_cast<double>(corner & 4 ? terrain.highest() : terrain.lowest()));
         depth = std::max(depth, glm::dot(point - camera.eye, basis.forward));
     }
     return depth * 1.01;

@@ -22,6 +22,8 @@ Heightfield::Heightfield(std::vector<float> heights, int32_t rows, int32_t colum
         if (std::isinf(heights[i]))
             throw Error(ErrorKind::input, "terrain: the height of sample " + std::to_string(i) +
                                               " is infinite; mark missing samples with NaN");
+        lowest_ = std::fmin(lowest_, heights[i]);
+        highest_ = std::fmax(highest_, heights[i]);
     }
     heights_ = std::make_shared<const std::vector<float>>(std::move(heights));
 }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -41,6 +42,9 @@ public:
                            static_cast<size_t>(column)];
     }
     Bounds bounds() const;
+    // Of the samples there are; above each other where there is none.
+    float lowest() const { return lowest_; }
+    float highest() const { return highest_; }
 
 private:
     std::shared_ptr<const std::vector<float>> heights_;
@@ -50,6 +54,8 @@ private:
     double y0_ = 0.0;
     double dx_ = 1.0;
     double dy_ = 1.0;
+    float lowest_ = std::numeric_limits<float>::infinity();
+    float highest_ = -std::numeric_limits<float>::infinity();
 };
 
 }  // namespace decalgl
