@@ -17,8 +17,7 @@ uniform vec4 sky_high;  // 45 degrees above it
 vec4 sky() {
     vec3 direction = ray_direction_at(pixel_from_centre());
     float rise = clamp(direction.z / max(length(direction.xy), 1e-6), 0.0, 1.0);
-    vec4 straight = mix(sky_low, sky_high, sqrt(rise));
-    return straight;
+    return mix(sky_low, sky_high, rise);
 }
 
 void main() {
