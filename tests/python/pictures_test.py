@@ -12,6 +12,7 @@ import shapely
 import decalgl as dg
 import judge
 import scenes
+import shapes
 from decalgl import reference as ref
 from scenes import View
 
@@ -167,7 +168,7 @@ def covered(view: View) -> View:
     x0, y0, x1, y1 = scene.terrain.bounds
     beyond = (x0 - 0.1 * (x1 - x0), y0 - 0.1 * (y1 - y0), x1 + 0.1 * (x1 - x0), y1 + 0.1 * (y1 - y0))
     scene.add_polygons(
-        scenes.partition(beyond, 60, 50, seed=7), crs=scene.terrain.crs, color=scenes.tints(3000, 8)
+        shapes.partition(beyond, 60, 50, seed=7), crs=scene.terrain.crs, color=shapes.tints(3000, 8)
     )
     return View(scene, view.camera, view.size)
 
@@ -226,7 +227,7 @@ def test_terrain_is_as_exact_as_asked(name: str, terrain_error: float) -> None:
 
 @pytest.mark.parametrize("fov", [45.0, 120.0])
 def test_terrain_is_as_exact_in_the_corners_of_a_wide_picture(fov: float) -> None:
-    scene = dg.Scene(dg.Terrain(scenes.waves(513, 513, 40.0), -5120.0, 5120.0, 20.0, 20.0))
+    scene = dg.Scene(dg.Terrain(shapes.waves(513, 513, 40.0), -5120.0, 5120.0, 20.0, 20.0))
     view = View(scene, dg.Camera.orbit((-3000.0, 0.0, 0.0), 4000.0, 200.0, 10.0, fov=fov), scenes.SIZE)
     frame = judge.draw(renderer(0.5), view)
     assert np.nanmax(judge.terrain_errors(view, frame)) <= 0.5

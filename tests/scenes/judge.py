@@ -14,10 +14,12 @@ import numpy as np
 
 import decalgl as dg
 from decalgl import reference as ref
-from scenes import View, repainted
+from shapes import repainted
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from scenes import View
 
     FloatArray = NDArray[np.float64]
     BoolArray = NDArray[np.bool_]
