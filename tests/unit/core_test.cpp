@@ -1,5 +1,7 @@
 // The parts that everything stands on: spans, parallel loops, progress, memory accounts, the radix sort.
 
+#include "error_kind.h"
+
 #include "decalgl/core/error.h"
 #include "decalgl/core/memory.h"
 #include "decalgl/core/parallel.h"
@@ -22,17 +24,9 @@
 #include <vector>
 
 using namespace decalgl;
+using test::kind_of;
 
 namespace {
-
-ErrorKind kind_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.kind();
-    }
-    throw std::logic_error("no Error was thrown");
-}
 
 template <typename Key>
 void check_sort(std::size_t size, Key mask, unsigned threads, unsigned key_bits) {

@@ -1,5 +1,7 @@
 // What the demo reads: the packed data as Python reads it, and damaged files as errors.
 
+#include "error_kind.h"
+
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,6 +18,7 @@
 #include "decalgl/core/error.h"
 
 using namespace decalgl;
+using test::kind_of;
 namespace fs = std::filesystem;
 
 namespace {
@@ -40,15 +43,6 @@ private:
 std::string bytes_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
-}
-
-ErrorKind kind_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.kind();
-    }
-    throw std::logic_error("no Error was thrown");
 }
 
 PolygonTable parse(const std::string& arcs, const std::string& geometries) {

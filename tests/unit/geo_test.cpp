@@ -1,5 +1,7 @@
 // The local metric plane agrees with PROJ's, and rasters come onto it exactly.
 
+#include "error_kind.h"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,6 +15,7 @@
 #include "decalgl/geo/local_plane.h"
 
 using namespace decalgl;
+using test::kind_of;
 
 namespace {
 
@@ -38,15 +41,6 @@ constexpr KnownPoint known_points[] = {
     {0.0, 90.0, 0.0, 80.0, 0.0, -1116825.857375851},
 };
 constexpr double micrometre = 1e-6;
-
-ErrorKind kind_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.kind();
-    }
-    throw std::logic_error("no Error was thrown");
-}
 
 double ramp_at(double longitude, double latitude) {
     return 300.0 * longitude - 170.0 * latitude;
