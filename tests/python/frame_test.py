@@ -243,8 +243,10 @@ def test_nothing_runs_that_the_scene_does_not_need() -> None:
     opaque = flat_scene()
     opaque.add_polygons([square])
     needed = {"terrain", "compose", "static_decals", "OVERLAY", "RINGS"}
-    assert variants(opaque) == needed
+    assert variants(opaque) == needed | {"ONE_COLOR"}
     assert variants(opaque, antialias="coverage", tile=512) == needed | {"COVERAGE"}
+    opaque.add_polygons([square], color="red")
+    assert variants(opaque) == needed
     clear = flat_scene()
     clear.add_lines([line], width=2, width_units="m", alpha=0.5)
     assert variants(clear) >= {"static_decals", "OVERLAY", "LINES", "TRANSLUCENT"}

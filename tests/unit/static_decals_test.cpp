@@ -5,7 +5,6 @@
 #include <random>
 
 #include "decalgl/core/error.h"
-#include "technique/static_decals/line_cells.h"
 #include "technique/static_decals/prepared_decals.h"
 
 using namespace decalgl;
@@ -47,33 +46,57 @@ std::unique_ptr<PreparedDecals> build(const std::vector<Layer>& layers, unsigned
     return build_decals(input, progress);
 }
 
-void require_well_formed(const PreparedDecals& decals) {
-    for (uint32_t cell = 0; cell < decals.grid.cell_count(); ++cell) {
-        uint32_t at = decals.cell_starts[cell];
-        const uint32_t end = decals.cell_starts[cell + 1];
-        int64_t previous_slot = -1;
-        while (at < end) {
-            const CellTexel header = decals.texels[at++];
-            REQUIRE(is_header(header));
-            REQUIRE(int64_t{header.y} > previous_slot);
-            REQUIRE(header.y < decals.slots.size());
-            previous_slot = header.y;
-            uint32_t pieces = 0;
-            for (; at < end && !is_header(decals.texels[at]); ++at)
-                ++pieces;
-            REQUIRE((pieces > 0 || (header.x & GROUP_COVERS) != 0));
+// One list: groups in draw order, points with an edge's beginning first, LIST_END to the texel's end.
+void require_list(const PreparedDecals& decals, Span<const uint32_t> words) {
+    int64_t previous_slot = -1;
+    bool has_point = false, ended = false;
+    for (const uint32_t word : words) {
+        REQUIRE((!ended || word == LIST_END));
+        if (word == LIST_END) {
+            ended = true;
+        } else if ((word & HEADER) != 0) {
+            const uint32_t slot = word & SLOT_MASK;
+            REQUIRE(int64_t{slot} > previous_slot);
+            REQUIRE(slot < decals.slots.size());
+            REQUIRE(((word & LINE) != 0) == (decals.styles[slot].half_width > 0.0F));
+            previous_slot = slot;
+            has_point = false;
+        } else {
+            REQUIRE(previous_slot >= 0);
+            REQUIRE((has_point || (word & MOVE) != 0));
+            has_point = true;
         }
-        REQUIRE(decals.cell_starts[cell] <= end);
+    }
+}
+
+void require_well_formed(const PreparedDecals& decals) {
+    REQUIRE(decals.bucket_entries.size() == decals.grid.bucket_count());
+    size_t cells = 0;
+    for (const uint32_t bucket : decals.bucket_entries) {
+        const uint32_t level = bucket & ((1U << LEVEL_BITS) - 1);
+        REQUIRE((level == 0 || (level >= COARSEST_LEVEL && level <= FINEST_LEVEL)));
+        REQUIRE(bucket >> LEVEL_BITS == cells);
+        cells += size_t{1} << (2 * level);
+    }
+    REQUIRE(cells == decals.cells.size());
+    for (const uint32_t entry : decals.cells) {
+        const size_t first = size_t{4} * (entry >> COUNT_BITS);
+        size_t count = size_t{4} * (entry & COUNT_ESCAPE);
+        if ((entry & COUNT_ESCAPE) == COUNT_ESCAPE)
+            while (decals.words[first + count - 1] != LIST_END)
+                count += 4;
+        REQUIRE(first + count <= decals.words.size());
+        require_list(decals, {decals.words.data() + first, count});
     }
 }
 
 // Even-odd on the rounded lattice, by a ray to the left.
-bool inside(const CellGrid& grid, const Ring& ring, double x, double y) {
+bool inside(const BucketGrid& grid, const Ring& ring, double x, double y) {
     bool result = false;
     const size_t count = ring.size() / 2;
     for (size_t i = 0; i < count; ++i) {
         const size_t j = (i + 1) % count;
-        const auto snapped = [&](size_t k) { return Lattice(grid).nearest(ring[2 * k], ring[2 * k + 1]); };
+        const auto snapped = [&](size_t k) { return Lattice(grid).nearest(&ring[2 * k]); };
         const double ax = grid.left() + static_cast<double>(snapped(i).x) * grid.quantum;
         const double ay = grid.bottom() + static_cast<double>(snapped(i).y) * grid.quantum;
         const double bx = grid.left() + static_cast<double>(snapped(j).x) * grid.quantum;
@@ -238,10 +261,59 @@ TEST_CASE("the same bytes on any number of threads", "[static]") {
     const auto one = build(layers, 1);
     const auto many = build(layers, 5);
     require_well_formed(*one);
-    REQUIRE(one->cell_starts == many->cell_starts);
-    const auto same = [](CellTexel a, CellTexel b) { return a.x == b.x && a.y == b.y; };
-    REQUIRE(
-        std::equal(one->texels.begin(), one->texels.end(), many->texels.begin(), many->texels.end(), same));
+    REQUIRE(one->bucket_entries == many->bucket_entries);
+    REQUIRE(one->cells == many->cells);
+    REQUIRE(one->words == many->words);
+}
+
+TEST_CASE("a ring is the same whether one run holds it or many do", "[static]") {
+    // A star whose rays cross many buckets, and the same one as parts of a feature with as many empty ones.
+    constexpr size_t vertices = 120000;
+    Ring star;
+    RandomMap random(5);
+    for (size_t i = 0; i < vertices; ++i) {
+        const double angle = 6.283185307179586 * static_cast<double>(i) / vertices;
+        const double radius = i % 2 == 0 ? random.between(100.0, 250.0) : random.between(350.0, 600.0);
+        star.insert(star.end(), {1500.0 + radius * std::cos(angle), 2500.0 + radius * std::sin(angle)});
+    }
+    const auto decals = build({polygons({star})}, 3);
+    require_well_formed(*decals);
+    for (int sample = 0; sample < 300; ++sample) {
+        const double x = random.between(1000.0, 1997.0), y = random.between(2000.0, 2991.0);
+        if (distance_to_ring(star, x, y) > 1.5 * decals->grid.quantum)
+            REQUIRE(decals->query(x, y).size() == (inside(decals->grid, star, x, y) ? 1 : 0));
+    }
+}
+
+TEST_CASE("long lists end where they should", "[static]") {
+    std::vector<Ring> rings;
+    for (int i = 0; i < 700; ++i)
+        rings.push_back({1500, 2500, 1500.5, 2500, 1500.5, 2500.5, 1500, 2500.5});
+    const auto decals = build({polygons(rings)});
+    require_well_formed(*decals);
+    CHECK(decals->longest_list > 4 * COUNT_ESCAPE);
+    CHECK(decals->query(1500.25, 2500.25).size() == rings.size());
+    CHECK(decals->query(1500.25, 2500.75).empty());
+}
+
+TEST_CASE("dense places have finer cells", "[static]") {
+    RandomMap random(13);
+    std::vector<Ring> parts;
+    for (int i = 0; i < 8000; ++i) {
+        const double x = random.between(1100.0, 1110.0), y = random.between(2100.0, 2110.0);
+        parts.push_back({x, y, x + random.between(-0.1, 0.1), y + random.between(-0.1, 0.1)});
+    }
+    parts.push_back({1600, 2600, 1900, 2900});
+    const auto decals = build({lines(parts, {0.05})});
+    require_well_formed(*decals);
+    const auto level_at = [&](double x, double y) {
+        const auto column = static_cast<int64_t>((x - decals->grid.left()) / decals->grid.bucket_size);
+        const auto row = static_cast<int64_t>((y - decals->grid.bottom()) / decals->grid.bucket_size);
+        return decals->bucket_entries[decals->grid.bucket_index(column, row)] & ((1U << LEVEL_BITS) - 1);
+    };
+    CHECK(level_at(1105.0, 2105.0) == FINEST_LEVEL);
+    CHECK(level_at(1700.0, 2700.0) == COARSEST_LEVEL);
+    CHECK(level_at(1300.0, 2900.0) == 0);
 }
 
 TEST_CASE("draw order, transparent features and rows", "[static]") {

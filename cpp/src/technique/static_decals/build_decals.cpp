@@ -1,41 +1,25 @@
-// From layers to a cell stream, on all cores and with the same bytes on any number of them:
+// From layers to cell lists, on all cores and with the same bytes on any number of them:
 //
-//   slots     features in draw order, topmost first, cut into runs of about as many vertices
-//   records   each run on its own: pieces with their cell and slot, sorted into buckets of
-//             cells while they are in the cache
-//   stream    each bucket on its own: its records of all runs, in order, in two passes that
-//             count and then write
-//
-// A scatter straight into cells would miss the cache on every record.
+//   slots         features in draw order, topmost first, cut into runs of about as many vertices
+//   references    each run on its own: which stretches of edges lie in which bucket
+//   lists         some buckets at a time: their edges, cut into cells, as one chunk
+//   index         all chunks one after the other
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
-#include "technique/static_decals/cell_stream_writer.h"
-#include "technique/static_decals/line_cells.h"
+#include "technique/static_decals/bucket_builder.h"
 #include "technique/static_decals/prepared_decals.h"
 #include "technique/static_decals/resolution.h"
-#include "technique/static_decals/ring_cells.h"
 
 namespace decalgl {
 namespace {
 
-// Few enough runs that a bucket gathers from few places, small enough that sorting one stays near the cache.
-constexpr size_t wanted_runs = 48;
-constexpr size_t smallest_run = 1 << 13;
-constexpr size_t largest_run = 1 << 18;
-
-struct Run {
-    size_t first_slot;
-    size_t last_slot;
-    size_t vertices;
-};
-
-const Layer& layer_of(const TechniqueInput& input, FeatureReference slot) {
-    return input.layers[slot.layer - input.first_layer];
-}
+constexpr size_t buckets_per_chunk = 64;
+constexpr uint64_t most_texels = uint64_t{1} << (32 - COUNT_BITS);
+constexpr uint64_t most_cells = uint64_t{1} << (32 - LEVEL_BITS);
 
 // A ring of n vertices has n edges, a line of n vertices n - 1 segments.
 uint64_t segments_of(const Features& features, size_t feature) {
@@ -49,6 +33,10 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
     for (size_t l = input.layers.size(); l-- > 0;) {
         const Layer& layer = input.layers[l];
         const bool lines = layer.features.kind == FeatureKind::lines;
+        if (layer.features.vertex_count() >= closing_edge)
+            throw Error(ErrorKind::memory,
+                        "static: layer '" + layer.name +
+                            "' has more vertices than one layer can; split it into several");
         for (size_t rank = layer.features.feature_count(); rank-- > 0;) {
             const size_t feature = layer.feature_at(rank);
             const uint8_t* color = layer.color(feature);
@@ -57,8 +45,7 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
             DecalStyle style{{color[0], color[1], color[2], color[3]}, 0.0F};
             if (lines) {
                 style.half_width = static_cast<float>(0.5 * layer.width(feature) / decals.grid.quantum);
-                decals.largest_scale =
-                    std::max(decals.largest_scale, line_scale(static_cast<double>(style.half_width)));
+                decals.largest_scale = std::max(decals.largest_scale, line_scale(style.half_width));
                 decals.widest = std::max(decals.widest, style.half_width);
                 decals.narrowest =
                     decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
@@ -66,116 +53,119 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
             decals.slots.push_back(
                 {input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
             decals.styles.push_back(style);
+            decals.has_one_color &= style.color == decals.styles.front().color;
             decals.segments += segments_of(layer.features, feature);
             decals.has_translucency |= color[3] != 255;
             (lines ? decals.has_lines : decals.has_polygons) = true;
         }
     }
+    if (decals.slots.size() > SLOT_MASK)
+        throw Error(ErrorKind::memory, "static: more than " + std::to_string(SLOT_MASK) +
+                                           " features in one scene; draw a smaller part of the map at once");
 }
 
-std::vector<Run> cut_into_runs(const TechniqueInput& input, const PreparedDecals& decals) {
-    size_t vertices = 0;
-    for (const Layer& layer : input.layers)
-        vertices += layer.features.vertex_count();
-    const size_t vertices_per_run = std::clamp(vertices / wanted_runs, smallest_run, largest_run);
-    std::vector<Run> runs;
-    Run run{0, 0, 0};
-    for (size_t slot = 0; slot < decals.slots.size(); ++slot) {
-        run.vertices +=
-            layer_of(input, decals.slots[slot]).features.vertices(decals.slots[slot].feature).size() / 2;
-        run.last_slot = slot + 1;
-        if (run.vertices >= vertices_per_run || run.last_slot == decals.slots.size()) {
-            runs.push_back(run);
-            run = {slot + 1, slot + 1, 0};
-        }
-    }
-    return runs;
-}
-
-template <typename OnPart>
-void for_each_part(const Features& features, size_t feature, OnPart on_part) {
-    const auto first = static_cast<size_t>(features.feature_offsets[feature]);
-    const auto last = static_cast<size_t>(features.feature_offsets[feature + 1]);
-    for (size_t part = first; part < last; ++part)
-        on_part(features.part(part));
-}
-
-CellRecords make_records(const TechniqueInput& input, const PreparedDecals& decals, const Run& run) {
-    CellRecords records(decals.grid);
-    records.reserve(2 * run.vertices);
-    RingCells rings(records);
-    for (size_t slot = run.first_slot; slot < run.last_slot; ++slot) {
-        const Features& features = layer_of(input, decals.slots[slot]).features;
-        const size_t feature = decals.slots[slot].feature;
-        records.set_slot(static_cast<uint32_t>(slot));
-        if (features.kind == FeatureKind::polygons) {
-            for_each_part(features, feature, [&](Span<const double> ring) { rings.add_ring(ring); });
-            rings.finish_feature();
-        } else {
-            const auto half_width = static_cast<double>(decals.styles[slot].half_width);
-            for_each_part(features, feature,
-                          [&](Span<const double> line) { mark_covered_cells(line, half_width, records); });
-            for_each_part(features, feature,
-                          [&](Span<const double> line) { add_line_pieces(line, half_width, records); });
-        }
-    }
-    records.sort_into_buckets();
-    return records;
-}
-
-std::vector<CellRecords> make_all_records(const TechniqueInput& input, const PreparedDecals& decals,
-                                          const std::vector<Run>& runs, std::vector<MemoryCharge>& charges,
-                                          Progress& progress) {
-    std::vector<CellRecords> all(runs.size(), CellRecords(decals.grid));
-    charges.resize(runs.size());
+std::vector<BucketReferences> make_all_references(const OrderedFeatures& features,
+                                                  std::vector<MemoryCharge>& charges, Progress& progress) {
+    const std::vector<Run> runs = cut_into_runs(features);
+    std::vector<BucketReferences> references(runs.size(), BucketReferences(*features.grid));
+    std::vector<CornerCrossings> crossings(runs.size());  // of the parts of large features
+    const unsigned threads = features.input->threads;
     parallel_for(
-        runs.size(), 1, input.threads,
+        runs.size(), 1, threads,
         [&](size_t begin, size_t end) {
-            for (size_t run = begin; run < end; ++run) {
-                charges[run] = MemoryCharge(input.memory, "static: working memory",
-                                            2 * runs[run].vertices * sizeof(CellRecord));
-                all[run] = make_records(input, decals, runs[run]);
-                charges[run].resize(all[run].size() * sizeof(CellRecord));
-            }
+            for (size_t run = begin; run < end; ++run)
+                references[run] = make_references(features, runs[run], crossings[run]);
         },
-        [&](double share) { progress.report(0.7 * share); });
-    return all;
+        [&](double share) { progress.report(0.3 * share); });
+    for (size_t i = 0; i < runs.size(); ++i) {
+        if (!runs[i].part_of_feature)
+            continue;
+        const bool last_part = i + 1 == runs.size() || runs[i + 1].first_slot != runs[i].first_slot;
+        if (last_part)
+            crossings[i].resolve(*features.grid, static_cast<uint32_t>(runs[i].first_slot), references[i]);
+        else
+            crossings[i + 1].append(crossings[i]);
+    }
+    charges.resize(runs.size());
+    parallel_for(runs.size(), 1, threads, [&](size_t begin, size_t end) {
+        for (size_t run = begin; run < end; ++run) {
+            references[run].sort_into_buckets();
+            charges[run] =
+                MemoryCharge(features.input->memory, "static: working memory", references[run].bytes());
+        }
+    });
+    return references;
 }
 
-void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& runs, PreparedDecals& decals,
-                  Progress& progress) {
-    const uint32_t bucket_count = decals.grid.bucket_count();
-    const uint64_t fixed_bytes = (uint64_t{bucket_count} * BUCKET_CELLS + 1) * sizeof(uint32_t) +
-                                 decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference));
-    decals.charge.resize(fixed_bytes);
-    decals.cell_starts.resize(size_t{bucket_count} * BUCKET_CELLS + 1);
-    std::vector<uint64_t> sizes(bucket_count);
-    parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
-        for (size_t bucket = begin; bucket < end; ++bucket)
-            sizes[bucket] = count_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles,
-                                                &decals.cell_starts[bucket * BUCKET_CELLS]);
-    });
-    uint64_t total = 0;
-    for (uint64_t& size : sizes) {
-        const uint64_t start = total;
-        total += size;
-        size = start;
+std::vector<CellChunk> make_chunks(const OrderedFeatures& features, const std::vector<BucketReferences>& runs,
+                                   std::vector<MemoryCharge>& charges, Progress& progress) {
+    const size_t buckets = features.grid->bucket_count();
+    std::vector<CellChunk> chunks(block_count(buckets, buckets_per_chunk));
+    charges.resize(chunks.size());
+    parallel_for(
+        buckets, buckets_per_chunk, features.input->threads,
+        [&](size_t begin, size_t end) {
+            const size_t index = begin / buckets_per_chunk;
+            CellChunk& chunk = chunks[index];
+            BucketBuilder builder(features);
+            for (size_t bucket = begin; bucket < end; ++bucket)
+                builder.build(static_cast<uint32_t>(bucket), runs, chunk);
+            charges[index] = MemoryCharge(features.input->memory, "static: working memory",
+                                          (chunk.cells.size() + chunk.words.size()) * sizeof(uint32_t));
+        },
+        [&](double share) { progress.report(0.3 + 0.6 * share); });
+    return chunks;
+}
+
+struct ChunkPlace {
+    uint64_t first_cell;
+    uint64_t first_texel;
+};
+
+// Copies a chunk to its place, where entries count from the index's beginning.
+void place_chunk(const CellChunk& chunk, const ChunkPlace& place, size_t first_bucket,
+                 PreparedDecals& decals) {
+    const auto cell_base = static_cast<uint32_t>(place.first_cell << LEVEL_BITS);
+    const auto texel_base = static_cast<uint32_t>(place.first_texel << COUNT_BITS);
+    for (size_t i = 0; i < chunk.bucket_entries.size(); ++i)
+        decals.bucket_entries[first_bucket + i] = chunk.bucket_entries[i] + cell_base;
+    for (size_t i = 0; i < chunk.cells.size(); ++i)
+        decals.cells[place.first_cell + i] =
+            chunk.cells[i] == EMPTY_LIST ? EMPTY_LIST : chunk.cells[i] + texel_base;
+    std::copy(chunk.words.begin(), chunk.words.end(),
+              decals.words.begin() + static_cast<std::ptrdiff_t>(4 * place.first_texel));
+}
+
+void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& charges,
+                 const TechniqueInput& input, PreparedDecals& decals) {
+    std::vector<ChunkPlace> places;
+    ChunkPlace end{0, 1};  // after the empty list
+    for (const CellChunk& chunk : chunks) {
+        places.push_back(end);
+        end.first_cell += chunk.cells.size();
+        end.first_texel += chunk.words.size() / 4;
+        decals.pieces += chunk.edges;
+        decals.longest_list = std::max(decals.longest_list, chunk.longest_list);
     }
-    if (total > std::numeric_limits<uint32_t>::max())
+    const uint64_t bytes = 16 * end.first_texel + 4 * end.first_cell +
+                           4 * uint64_t{decals.grid.bucket_count()} +
+                           decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference));
+    if (end.first_texel > most_texels || end.first_cell > most_cells)
         throw Error(ErrorKind::memory,
-                    "the static index would need " + format_bytes(total * sizeof(CellTexel)) +
+                    "the static index would need " + format_bytes(bytes) +
                         ", more than one index can address; draw a smaller part of the map at once");
-    decals.charge.resize(total * sizeof(CellTexel) + fixed_bytes);
-    decals.longest_cell = *std::max_element(decals.cell_starts.begin(), decals.cell_starts.end() - 1);
-    decals.texels.resize(total);
-    progress.report(0.8);
-    parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
-        for (size_t bucket = begin; bucket < end; ++bucket)
-            write_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles,
-                                static_cast<uint32_t>(sizes[bucket]),
-                                &decals.cell_starts[bucket * BUCKET_CELLS], decals.texels.data());
+    decals.charge.resize(bytes);
+    decals.bucket_entries.resize(decals.grid.bucket_count());
+    decals.cells.resize(end.first_cell);
+    decals.words.resize(4 * end.first_texel);
+    std::fill_n(decals.words.begin(), 4, LIST_END);
+    parallel_for(chunks.size(), 1, input.threads, [&](size_t begin, size_t last) {
+        for (size_t i = begin; i < last; ++i) {
+            place_chunk(chunks[i], places[i], i * buckets_per_chunk, decals);
+            chunks[i] = CellChunk();
+            charges[i] = MemoryCharge();
+        }
     });
-    decals.cell_starts.back() = static_cast<uint32_t>(total);
 }
 
 }  // namespace
@@ -183,16 +173,19 @@ void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& r
 std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress) {
     auto decals = std::make_unique<PreparedDecals>();
     decals->charge = MemoryCharge(input.memory, "static: prepared", 0);
-    decals->grid = CellGrid::over(input.bounds, input.positions, choose_resolution(input));
+    decals->grid = BucketGrid::over(input.bounds, input.positions, choose_resolution(input));
     collect_slots(input, *decals);
-    const std::vector<Run> runs = cut_into_runs(input, *decals);
-    std::vector<MemoryCharge> working_memory;
-    const std::vector<CellRecords> records = make_all_records(input, *decals, runs, working_memory, progress);
-    size_t record_count = 0;
-    for (const CellRecords& run : records)
-        record_count += run.size();
-    write_stream(input, records, *decals, progress);
-    decals->pieces = record_count;
+    std::vector<float> half_widths;
+    half_widths.reserve(decals->styles.size());
+    for (const DecalStyle& style : decals->styles)
+        half_widths.push_back(style.half_width);
+    const OrderedFeatures features{&input, &decals->grid, decals->slots, half_widths};
+    std::vector<MemoryCharge> reference_charges, chunk_charges;
+    std::vector<BucketReferences> references = make_all_references(features, reference_charges, progress);
+    std::vector<CellChunk> chunks = make_chunks(features, references, chunk_charges, progress);
+    references.clear();
+    reference_charges.clear();
+    join_chunks(chunks, chunk_charges, input, *decals);
     progress.report(1.0);
     return decals;
 }

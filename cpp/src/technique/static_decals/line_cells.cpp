@@ -3,43 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "technique/static_decals/line_reach.h"
+
 namespace decalgl {
 namespace {
-
-enum class Wanted { covered_cells, pieces };
-
-struct Stroke {
-    double half_width;  // quanta
-    int64_t reach;      // half width, rounded up
-    int scale;
-    Wanted wanted;
-
-    Stroke(double half_width_in_quanta, Wanted what)
-        : half_width(half_width_in_quanta),
-          reach(static_cast<int64_t>(std::ceil(half_width_in_quanta))),
-          scale(line_scale(half_width_in_quanta)),
-          wanted(what) {}
-
-    bool can_cover_cells() const { return half_width >= CELL_QUANTA * 0.7072; }
-};
-
-// The part of a segment inside a box, as parameters along it; empty when first > last.
-struct Interval {
-    double first = 0.0;
-    double last = 1.0;
-
-    void clip(double start, double step, double low, double high) {
-        if (step == 0.0) {
-            if (start < low || start > high)
-                last = -1.0;
-            return;
-        }
-        const double t0 = (low - start) / step;
-        const double t1 = (high - start) / step;
-        first = std::max(first, std::min(t0, t1));
-        last = std::min(last, std::max(t0, t1));
-    }
-};
 
 bool within(double x, double y, LatticePoint a, LatticePoint b, double radius) {
     const double dx = static_cast<double>(b.x - a.x);
@@ -54,132 +21,89 @@ bool within(double x, double y, LatticePoint a, LatticePoint b, double radius) {
 }
 
 // A stroke is convex, so it covers a cell when it covers the four corners.
-bool covers_cell(LatticePoint a, LatticePoint b, double half_width, int32_t column, int32_t row) {
-    const double left = static_cast<double>(column) * CELL_QUANTA;
-    const double bottom = static_cast<double>(row) * CELL_QUANTA;
-    return within(left, bottom, a, b, half_width) && within(left + CELL_QUANTA, bottom, a, b, half_width) &&
-           within(left, bottom + CELL_QUANTA, a, b, half_width) &&
-           within(left + CELL_QUANTA, bottom + CELL_QUANTA, a, b, half_width);
+bool covers_cell(LatticePoint a, LatticePoint b, double half_width, const SquareRange& cells, int64_t column,
+                 int64_t row) {
+    const auto left = static_cast<double>(cells.border(column)),
+               right = static_cast<double>(cells.border(column + 1));
+    const auto bottom = static_cast<double>(cells.border(row)),
+               top = static_cast<double>(cells.border(row + 1));
+    return within(left, bottom, a, b, half_width) && within(right, bottom, a, b, half_width) &&
+           within(left, top, a, b, half_width) && within(right, top, a, b, half_width);
 }
 
-void add_clipped_piece(LatticePoint a, LatticePoint b, const Stroke& stroke, int32_t column, int32_t row,
-                       CellRecords& records) {
-    const double unit = std::ldexp(1.0, -stroke.scale);
-    const double ax = static_cast<double>(a.x - int64_t{column} * CELL_QUANTA) * unit + COORDINATE_BIAS;
-    const double ay = static_cast<double>(a.y - int64_t{row} * CELL_QUANTA) * unit + COORDINATE_BIAS;
-    const double bx = static_cast<double>(b.x - int64_t{column} * CELL_QUANTA) * unit + COORDINATE_BIAS;
-    const double by = static_cast<double>(b.y - int64_t{row} * CELL_QUANTA) * unit + COORDINATE_BIAS;
-    Interval kept;
-    kept.clip(ax, bx - ax, 0.0, COORDINATE_MAX);
-    kept.clip(ay, by - ay, 0.0, COORDINATE_MAX);
-    if (kept.first > kept.last)
-        return;
-    const auto at = [](double start, double end, double t) {
-        const double value = t <= 0.0 ? start : t >= 1.0 ? end : start + t * (end - start);
-        return static_cast<uint16_t>(std::lrint(std::clamp(value, 0.0, double{COORDINATE_MAX})));
-    };
-    records.add_piece(records.grid().cell_index(column, row), at(ax, bx, kept.first), at(ay, by, kept.first),
-                      at(ax, bx, kept.last), at(ay, by, kept.last));
-}
-
-void add_piece(LatticePoint a, LatticePoint b, const Stroke& stroke, int32_t column, int32_t row,
-               CellRecords& records) {
-    const bool covers = stroke.can_cover_cells() && covers_cell(a, b, stroke.half_width, column, row);
-    if (stroke.wanted == Wanted::covered_cells) {
-        if (covers)
-            records.add_covered(column, row, row);
-        return;
-    }
-    if (covers)
-        return;
-    const int64_t left = int64_t{column} * CELL_QUANTA - COORDINATE_BIAS;
-    const int64_t bottom = int64_t{row} * CELL_QUANTA - COORDINATE_BIAS;
-    const int64_t x0 = a.x - left, y0 = a.y - bottom, x1 = b.x - left, y1 = b.y - bottom;
-    const bool fits =
-        stroke.scale == 0 && ((x0 | y0 | x1 | y1) & ~int64_t{0xFFFF}) == 0 && x0 != covers_marker;
-    if (fits)
-        records.add_piece(records.grid().cell_index(column, row), static_cast<uint16_t>(x0),
-                          static_cast<uint16_t>(y0), static_cast<uint16_t>(x1), static_cast<uint16_t>(y1));
-    else
-        add_clipped_piece(a, b, stroke, column, row, records);
-}
-
-// The cells of a row or column of `count` that reach from `low` to `high` touches, in quanta.
-struct CellSpan {
-    int32_t first;
-    int32_t last;
-
-    CellSpan(int64_t low, int64_t high, int32_t count)
-        : first(static_cast<int32_t>(std::clamp<int64_t>(low >> CELL_BITS, 0, count))),
-          last(static_cast<int32_t>(std::clamp<int64_t>(high >> CELL_BITS, -1, count - 1))) {}
-};
-
-// Column by column: the rows that the widened segment reaches there.
-void add_segment(LatticePoint a, LatticePoint b, const Stroke& stroke, CellRecords& records) {
-    const CellGrid& grid = records.grid();
-    const int64_t reach = stroke.reach;
-    const CellSpan columns(std::min(a.x, b.x) - reach, std::max(a.x, b.x) + reach, grid.columns);
-    const CellSpan rows(std::min(a.y, b.y) - reach, std::max(a.y, b.y) + reach, grid.rows);
-    if (columns.first == columns.last || rows.first == rows.last) {
-        for (int32_t column = columns.first; column <= columns.last; ++column)
-            for (int32_t row = rows.first; row <= rows.last; ++row)
-                add_piece(a, b, stroke, column, row, records);
-        return;
-    }
-    const auto ax = static_cast<double>(a.x), ay = static_cast<double>(a.y);
-    const double dx = static_cast<double>(b.x) - ax, dy = static_cast<double>(b.y) - ay;
-    for (int32_t column = columns.first; column <= columns.last; ++column) {
-        Interval inside;
-        inside.clip(ax, dx, static_cast<double>(int64_t{column} * CELL_QUANTA - reach),
-                    static_cast<double>(int64_t{column + 1} * CELL_QUANTA + reach));
-        if (inside.first > inside.last)
-            continue;
-        const auto y0 = static_cast<int64_t>(ay + inside.first * dy);
-        const auto y1 = static_cast<int64_t>(ay + inside.last * dy);
-        // One quantum more, for the rounding towards zero.
-        const CellSpan here(std::min(y0, y1) - reach - 1, std::max(y0, y1) + reach + 1, grid.rows);
-        for (int32_t row = here.first; row <= here.last; ++row)
-            add_piece(a, b, stroke, column, row, records);
-    }
-}
-
-void add_part(Span<const double> coordinates, const Stroke& stroke, CellRecords& records) {
-    const Lattice lattice(records.grid());
-    const size_t count = coordinates.size() / 2;
-    if (count == 0)
-        return;
-    LatticePoint previous = lattice.nearest(coordinates[0], coordinates[1]);
-    bool drawn = false;
-    for (size_t i = 1; i < count; ++i) {
-        const LatticePoint next = lattice.nearest(coordinates[2 * i], coordinates[2 * i + 1]);
-        if (next == previous)
-            continue;
-        add_segment(previous, next, stroke, records);
-        previous = next;
-        drawn = true;
-    }
-    // A line shorter than a quantum is still a dot.
-    if (!drawn)
-        add_segment(previous, previous, stroke, records);
+uint32_t word_of(uint32_t x, uint32_t y) {
+    return x | y << COORDINATE_BITS;
 }
 
 }  // namespace
 
-int line_scale(double half_width_in_quanta) {
-    constexpr double reach = COORDINATE_BIAS - 2;
-    return half_width_in_quanta <= reach
-               ? 0
-               : static_cast<int>(std::ceil(std::log2(half_width_in_quanta / reach)));
+void LineCells::begin(uint32_t slot, float half_width) {
+    const int64_t last = (int64_t{1} << lists_->level()) - 1;
+    cells_ = {cell_bits(lists_->level()), 0, 0, last, last};
+    slot_ = slot;
+    half_width_ = static_cast<double>(half_width);
+    reach_ = static_cast<int64_t>(std::ceil(half_width));
+    scale_ = line_scale(half_width);
+    covers_cells_ = false;
 }
 
-void mark_covered_cells(Span<const double> coordinates, double half_width, CellRecords& records) {
-    const Stroke stroke(half_width, Wanted::covered_cells);
-    if (stroke.can_cover_cells())
-        add_part(coordinates, stroke, records);
+void LineCells::mark_covered_cells(Span<const LatticePoint> points) {
+    if (half_width_ < 0.7071 * static_cast<double>(cells_.border(1)))
+        return;
+    for (size_t i = 0; i < points.size(); ++i) {
+        const LatticePoint a = points[i == 0 ? 0 : i - 1], b = points[i];
+        for_each_square_near(a, b, reach_, cells_, [&](int64_t column, int64_t row) {
+            if (!covers_cell(a, b, half_width_, cells_, column, row))
+                return;
+            lists_->add_covers(lists_->cell_at(column, row), slot_, LINE);
+            covers_cells_ = true;
+        });
+    }
 }
 
-void add_line_pieces(Span<const double> coordinates, double half_width, CellRecords& records) {
-    add_part(coordinates, Stroke(half_width, Wanted::pieces), records);
+void LineCells::add_edges(Span<const LatticePoint> points) {
+    const auto add = [&](LatticePoint a, LatticePoint b) {
+        for_each_square_near(a, b, reach_, cells_,
+                             [&](int64_t column, int64_t row) { add_edge(a, b, column, row); });
+    };
+    if (points.size() == 1)
+        add(points[0], points[0]);
+    for (size_t i = 1; i < points.size(); ++i)
+        add(points[i - 1], points[i]);
+}
+
+void LineCells::add_edge(LatticePoint a, LatticePoint b, int64_t column, int64_t row) {
+    const uint32_t cell = lists_->cell_at(column, row);
+    if (covers_cells_ && lists_->is_covered(cell, slot_))
+        return;
+    const int64_t bias = cell_bias(lists_->level());
+    const int64_t left = cells_.border(column), bottom = cells_.border(row);
+    const int64_t x0 = a.x - left + bias, y0 = a.y - bottom + bias, x1 = b.x - left + bias,
+                  y1 = b.y - bottom + bias;
+    if (scale_ == 0 && ((x0 | y0 | x1 | y1) & ~int64_t{COORDINATE_MASK}) == 0) {
+        lists_->add_edge(cell, slot_, LINE, word_of(static_cast<uint32_t>(x0), static_cast<uint32_t>(y0)),
+                         word_of(static_cast<uint32_t>(x1), static_cast<uint32_t>(y1)));
+        return;
+    }
+    const double unit = std::ldexp(1.0, -scale_), origin = static_cast<double>(bias);
+    const double ax = static_cast<double>(a.x - left) * unit + origin,
+                 ay = static_cast<double>(a.y - bottom) * unit + origin;
+    const double bx = static_cast<double>(b.x - left) * unit + origin,
+                 by = static_cast<double>(b.y - bottom) * unit + origin;
+    static constexpr double most = COORDINATE_MASK;
+    SegmentInterval kept;
+    kept.clip(ax, bx - ax, 0.0, most);
+    kept.clip(ay, by - ay, 0.0, most);
+    if (kept.first > kept.last)
+        return;
+    const auto word_at = [&](double t) {
+        const auto along = [t](double start, double end) {
+            const double value = t <= 0.0 ? start : t >= 1.0 ? end : start + t * (end - start);
+            return static_cast<uint32_t>(std::lrint(std::clamp(value, 0.0, most)));
+        };
+        return word_of(along(ax, bx), along(ay, by));
+    };
+    lists_->add_edge(cell, slot_, LINE, word_at(kept.first), word_at(kept.last));
 }
 
 }  // namespace decalgl

@@ -1,23 +1,38 @@
-// Lines into cells: every cell that the stroke of a segment touches gets that segment.
+// Lines into the cells of a bucket: a segment goes into each cell that its stroke may touch.
 //
-// After Zechmeister 2020, section 3.2.1: segments are widened before they are assigned. Here by the Minkowski
-// sum of the segment and a square of half the width, a superset of the round stroke that is cheap to test.
+// Ends that come from cutting a segment where 15 bits end lie outside the stroke's reach of the cell, so they
+// never show.
 #pragma once
 
+#include <cstdint>
+
 #include "decalgl/core/span.h"
-#include "technique/static_decals/cell_records.h"
+#include "technique/static_decals/cell_list_builder.h"
 
 namespace decalgl {
 
-// How coarse coordinates must be so that the stroke's surroundings fit into 16 bits: quanta per unit =
-// 2^scale.
-int line_scale(double half_width_in_quanta);
+class LineCells {
+public:
+    explicit LineCells(CellListBuilder& lists) : lists_(&lists) {}
 
-// Marks the cells that the stroke of one segment covers whole. A feature's marks come before its pieces, so
-// that the pieces in those cells can be left out.
-void mark_covered_cells(Span<const double> coordinates, double half_width, CellRecords& records);
+    // Begins a line in the bucket that `lists` is at. `half_width` in quanta.
+    void begin(uint32_t slot, float half_width);
 
-// Adds the pieces of one polyline. `coordinates`: x, y of its vertices; `half_width`: in quanta.
-void add_line_pieces(Span<const double> coordinates, double half_width, CellRecords& records);
+    // First all covered cells of a line, then its edges, which those do without. Points that follow each
+    // other, counted from the bucket's corner; one alone is a dot.
+    void mark_covered_cells(Span<const LatticePoint> points);
+    void add_edges(Span<const LatticePoint> points);
+
+private:
+    void add_edge(LatticePoint a, LatticePoint b, int64_t column, int64_t row);
+
+    CellListBuilder* lists_;
+    SquareRange cells_{};
+    uint32_t slot_ = 0;
+    double half_width_ = 0.0;  // quanta
+    int64_t reach_ = 0;        // half width, rounded up
+    int scale_ = 0;
+    bool covers_cells_ = false;
+};
 
 }  // namespace decalgl

@@ -1,4 +1,4 @@
-// Prepared static decals: the grid, its cell stream and the features' styles, as flat arrays.
+// Prepared static decals: the grid, its cell lists and the features' styles, as flat arrays.
 #pragma once
 
 #include <array>
@@ -7,18 +7,9 @@
 
 #include "decalgl/core/large_array.h"
 #include "decalgl/technique/technique.h"
-#include "technique/static_decals/cell_grid.h"
+#include "technique/static_decals/bucket_grid.h"
 
 namespace decalgl {
-
-struct CellTexel {
-    uint32_t x;
-    uint32_t y;
-};
-
-inline bool is_header(CellTexel texel) {
-    return (texel.x & 0xFFFFU) == HEADER_MARK;
-}
 
 // As the shaders read it, one a slot.
 struct DecalStyle {
@@ -33,24 +24,27 @@ public:
     FeatureReference feature(uint32_t id) const override { return slots[id]; }
     std::vector<FeatureReference> query(double x, double y) const override;
 
-    CellGrid grid;
-    LargeArray<uint32_t> cell_starts;  // into texels, cell_count() + 1 of them
-    LargeArray<CellTexel> texels;
+    BucketGrid grid;
+    // As cell_lists.h says.
+    std::vector<uint32_t> bucket_entries;
+    LargeArray<uint32_t> cells;
+    LargeArray<uint32_t> words;
     std::vector<DecalStyle> styles;
     std::vector<FeatureReference> slots;  // topmost first
     uint64_t segments = 0;
     uint64_t pieces = 0;
-    uint32_t longest_cell = 0;  // texels
+    uint32_t longest_list = 0;  // words
     int largest_scale = 0;
     float widest = 0.0F;  // half widths of lines, in quanta
     float narrowest = 0.0F;
     bool has_polygons = false;
     bool has_lines = false;
+    bool has_one_color = true;
     bool has_translucency = false;
     MemoryCharge charge;
 };
 
-// Throws Error(memory) where the index would not fit into the budget or the stream, Error(cancelled).
+// Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).
 std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress);
 
 }  // namespace decalgl

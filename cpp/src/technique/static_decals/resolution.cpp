@@ -5,12 +5,15 @@
 #include <limits>
 #include <vector>
 
+#include "technique/static_decals/cell_lists.h"
+
 namespace decalgl {
 namespace {
 
-constexpr int32_t coarsest = 64;
-constexpr int32_t coarsest_wanted = 1024;
-constexpr int32_t finest = 4096;
+constexpr int32_t coarsest = 8;
+constexpr int32_t coarsest_wanted = 64;
+constexpr int32_t finest = 256;
+constexpr double edges_per_bucket = 100.0;
 constexpr size_t samples_per_layer = 4096;
 
 // What an index may hold: some records a segment, and a fixed number for the cells inside large features.
@@ -72,15 +75,16 @@ int32_t choose_resolution(const TechniqueInput& input) {
         segments += static_cast<double>(layer.features.vertex_count());
         add_samples(layer, input.bounds, samples);
     }
-    const double wanted = std::exp2(std::round(std::log2(std::sqrt(std::max(segments, 1.0) / 1.2))));
+    const double wanted =
+        std::exp2(std::round(std::log2(std::sqrt(std::max(segments, 1.0) / edges_per_bucket))));
     auto resolution = std::clamp(static_cast<int32_t>(wanted), coarsest_wanted, finest);
 
     const double extent =
         std::max(input.bounds.max_x - input.bounds.min_x, input.bounds.max_y - input.bounds.min_y);
     const double allowed = records_per_segment * segments + records_besides;
-    while (resolution > coarsest && estimate_records(samples, extent / resolution) > allowed) {
+    const auto coarsest_cell = [&] { return extent / resolution / (1 << COARSEST_LEVEL); };
+    while (resolution > coarsest && estimate_records(samples, coarsest_cell()) > allowed)
         resolution /= 2;
-    }
     return resolution;
 }
 

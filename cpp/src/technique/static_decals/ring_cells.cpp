@@ -1,135 +1,108 @@
 #include "technique/static_decals/ring_cells.h"
 
-#include <algorithm>
-#include <cmath>
+#include "technique/static_decals/ring_cuts.h"
 
 namespace decalgl {
 namespace {
 
-// Where the edge a-b is at a given x or y, on the lattice. Monotone in its argument, since every step is.
-int64_t y_at(LatticePoint a, LatticePoint b, int64_t x) {
-    const double t = static_cast<double>(x - a.x) / static_cast<double>(b.x - a.x);
-    return a.y + std::lrint(t * static_cast<double>(b.y - a.y));
+// Bit i of the result is the parity of bits 0 .. i.
+uint64_t running_parity(uint64_t bits) {
+    for (int step = 1; step < 64; step *= 2)
+        bits ^= bits << step;
+    return bits;
 }
 
-int64_t x_at(LatticePoint a, LatticePoint b, int64_t y) {
-    const double t = static_cast<double>(y - a.y) / static_cast<double>(b.y - a.y);
-    return a.x + std::lrint(t * static_cast<double>(b.x - a.x));
-}
-
-int64_t border(int64_t cell) {
-    return cell * CELL_QUANTA;
-}
-
-int64_t clamp_cell(int64_t quanta, int64_t low, int64_t high) {
-    return std::clamp(quanta >> CELL_BITS, low, high);
-}
-
-uint16_t local(int64_t quanta, int64_t cell) {
-    return static_cast<uint16_t>(quanta - border(cell) + COORDINATE_BIAS);
+uint64_t lowest_bits(int64_t count) {
+    return count >= 64 ? ~uint64_t{0} : (uint64_t{1} << count) - 1;
 }
 
 }  // namespace
 
-void RingCells::add_ring(Span<const double> coordinates) {
-    const Lattice lattice(records_->grid());
-    const size_t count = coordinates.size() / 2;
-    if (count < 3)
+void RingCells::begin(uint32_t slot) {
+    const int64_t last = (int64_t{1} << lists_->level()) - 1;
+    cells_ = {cell_bits(lists_->level()), 0, 0, last, last};
+    slot_ = slot;
+    for (; crossed_columns_ != 0; crossed_columns_ &= crossed_columns_ - 1)
+        crossed_rows_[static_cast<size_t>(__builtin_ctzll(crossed_columns_))] = 0;
+    changed_columns_ = 0;
+}
+
+void RingCells::add_edge(LatticePoint from, LatticePoint to) {
+    if (from == to)
         return;
-    LatticePoint previous = lattice.nearest(coordinates[2 * count - 2], coordinates[2 * count - 1]);
-    for (size_t i = 0; i < count; ++i) {
-        const LatticePoint next = lattice.nearest(coordinates[2 * i], coordinates[2 * i + 1]);
-        const bool forward = previous.x < next.x || (previous.x == next.x && previous.y < next.y);
-        if (forward)
-            add_edge(previous, next);
-        else if (!(previous == next))
-            add_edge(next, previous);
-        previous = next;
+    const int64_t column = to.x >> cells_.bits, row = to.y >> cells_.bits;
+    const bool one_cell = from.x >> cells_.bits == column && from.y >> cells_.bits == row;
+    if (one_cell) {
+        if (column >= 0 && column <= cells_.last_column && row >= 0 && row <= cells_.last_row)
+            add_piece({column, row, from, to});
+        return;
+    }
+    pieces_.clear();
+    const RingEdge edge(from, to);
+    edge.cut(cells_, false, [&](int64_t c, int64_t r, LatticePoint a, LatticePoint b) {
+        pieces_.push_back({c, r, a, b});
+    });
+    // In the ring's direction, so that a piece goes on where the last one ended.
+    if (edge.reversed())
+        for (size_t i = pieces_.size(); i-- > 0;)
+            add_piece({pieces_[i].column, pieces_[i].row, pieces_[i].to, pieces_[i].from});
+    else
+        for (const Piece& piece : pieces_)
+            add_piece(piece);
+}
+
+// What lies between the corners of the lowest row, walking along just above the border: pieces that rise from it. The
+// corners themselves are just below it, so a level piece on the border lies between a corner and the walk.
+void RingCells::follow_lowest_row(const Piece& piece) {
+    const LatticePoint low = piece.from.y < piece.to.y ? piece.from : piece.to;
+    if (low.y != 0)
+        return;
+    const int64_t left = cells_.border(piece.column);
+    if (piece.from.y != piece.to.y) {
+        // The first column whose corner is at the piece or to the right of it. The walk starts right of the first.
+        if (low.x > 0)
+            changed_columns_ ^= ~lowest_bits(((low.x - 1) >> cells_.bits) + 1);
+    } else if ((piece.from.x == left) != (piece.to.x == left)) {
+        changed_columns_ ^= piece.column == 0 ? ~uint64_t{1} : uint64_t{1} << piece.column;
     }
 }
 
-// a is left of b, or below it.
-void RingCells::add_edge(LatticePoint a, LatticePoint b) {
-    const CellGrid& grid = records_->grid();
-    if (std::min(a.y, b.y) >= border(grid.rows) || b.x <= 0 || a.x >= border(grid.columns))
+void RingCells::add_piece(const Piece& piece) {
+    if (piece.row == 0)
+        follow_lowest_row(piece);
+    const LatticePoint from = piece.from, to = piece.to;
+    const int64_t left = cells_.border(piece.column), bottom = cells_.border(piece.row);
+    // Along a border nothing is crossed, on the way up the left one or on a row.
+    if (from.x == to.x && (from.x == left || from.x == cells_.border(piece.column + 1)))
         return;
-    const int64_t first = clamp_cell(a.x, 0, grid.columns - 1);
-    const int64_t last = std::max(first, clamp_cell(b.x - 1, 0, grid.columns - 1));
-    LatticePoint start = a;
-    if (a.x < border(first))
-        start = {border(first), y_at(a, b, border(first))};
-    for (int64_t column = first; column <= last; ++column) {
-        const int64_t right = border(column + 1);
-        const LatticePoint end = b.x <= right ? b : LatticePoint{right, y_at(a, b, right)};
-        add_column_piece(static_cast<int32_t>(column), start, end);
-        start = end;
+    const bool leaves_border = (from.x == left) != (to.x == left);
+    if (leaves_border) {
+        const auto column = static_cast<size_t>(piece.column);
+        crossed_rows_[column] ^= uint64_t{1} << piece.row;
+        crossed_columns_ |= uint64_t{1} << piece.column;
+    } else if (from.y == to.y) {
+        return;
     }
+    const int64_t bias = cell_bias(lists_->level());
+    const auto word = [&](LatticePoint point) {
+        return static_cast<uint32_t>(point.x - left + bias) | static_cast<uint32_t>(point.y - bottom + bias)
+                                                                  << COORDINATE_BITS;
+    };
+    lists_->add_edge(lists_->cell_at(piece.column, piece.row), slot_, 0, word(from), word(to));
 }
 
-// A piece between the borders of one column, a left of b or straight below it: cut into rows from the bottom
-// up.
-void RingCells::add_column_piece(int32_t column, LatticePoint a, LatticePoint b) {
-    const CellGrid& grid = records_->grid();
-    const LatticePoint low = a.y <= b.y ? a : b;
-    const LatticePoint high = a.y <= b.y ? b : a;
-    const int64_t left = border(column);
-    if (low.y >= border(grid.rows))
+void RingCells::finish(bool bucket_corner_inside) {
+    const int64_t side = cells_.last_column + 1;
+    const uint64_t lowest_row = (bucket_corner_inside ? ~uint64_t{0} : 0) ^ changed_columns_;
+    if (crossed_columns_ == 0 && (lowest_row & lowest_bits(side)) == 0)
         return;
-    if (high.y < 0) {
-        if ((low.x == left) != (high.x == left))
-            add_crossing(column, -1);
-        return;
+    for (int64_t column = 0; column < side; ++column) {
+        const uint64_t first = (lowest_row >> column & 1) != 0 ? ~uint64_t{0} : 0;
+        uint64_t inside =
+            (running_parity(crossed_rows_[static_cast<size_t>(column)]) << 1 ^ first) & lowest_bits(side);
+        for (; inside != 0; inside &= inside - 1)
+            lists_->add_covers(lists_->cell_at(column, __builtin_ctzll(inside)), slot_, 0);
     }
-    LatticePoint start = low;
-    if (low.y < 0) {
-        start = {x_at(a, b, 0), 0};
-        if ((low.x == left) != (start.x == left))
-            add_crossing(column, -1);
-    }
-    const int64_t first = start.y >> CELL_BITS;
-    const int64_t last = std::max(first, clamp_cell(high.y - 1, 0, grid.rows - 1));
-    for (int64_t row = first; row <= last; ++row) {
-        const int64_t top = border(row + 1);
-        const LatticePoint end = high.y <= top ? high : LatticePoint{x_at(a, b, top), top};
-        add_cell_piece(column, static_cast<int32_t>(row), start, end);
-        start = end;
-    }
-}
-
-void RingCells::add_cell_piece(int32_t column, int32_t row, LatticePoint low, LatticePoint high) {
-    const int64_t left = border(column);
-    const int64_t right = border(column + 1);
-    // A piece on a border crosses neither the walk up the left border nor a row: it decides nothing.
-    if (low.x == high.x && (low.x == left || low.x == right))
-        return;
-    const bool leaves_border = (low.x == left) != (high.x == left);
-    if (leaves_border)
-        add_crossing(column, row);
-    if (low.y == high.y && !leaves_border)
-        return;
-    records_->add_piece(records_->grid().cell_index(column, row), local(low.x, column), local(low.y, row),
-                        local(high.x, column), local(high.y, row));
-}
-
-void RingCells::add_crossing(int32_t column, int32_t row) {
-    crossings_.push_back(static_cast<uint32_t>(column) << 16 | static_cast<uint32_t>(row + 1));
-}
-
-// Up a column, every crossing turns inside to outside and back; the cells above it know their corner by that.
-void RingCells::finish_feature() {
-    std::sort(crossings_.begin(), crossings_.end());
-    const int32_t rows = records_->grid().rows;
-    for (size_t i = 0; i < crossings_.size();) {
-        const uint32_t column = crossings_[i] >> 16;
-        const auto row_of = [&](size_t k) { return static_cast<int32_t>(crossings_[k] & 0xFFFFu) - 1; };
-        const int32_t first = row_of(i) + 1;
-        const bool has_end = i + 1 < crossings_.size() && crossings_[i + 1] >> 16 == column;
-        const int32_t last = has_end ? row_of(i + 1) : rows - 1;
-        if (first <= last)
-            records_->add_covered(static_cast<int32_t>(column), first, last);
-        i += has_end ? 2 : 1;
-    }
-    crossings_.clear();
 }
 
 }  // namespace decalgl

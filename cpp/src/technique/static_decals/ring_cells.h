@@ -1,47 +1,63 @@
-// Rings into cells: edges are cut at cell borders, and cells without a piece are known whole.
+// Rings into the cells of a bucket.
 //
 // What is inside is decided from a cell's lower left corner: walk up the left border to the pixel's height,
 // then right to the pixel, and count what is crossed.
 //
 //        +---------------------+      crossings on the left border:
-//        |        __/          |          pieces that start there, below the pixel
+//        |        __/          |          edges that start there, below the pixel
 //        o------/---> pixel    |      crossings of the row:
-//        |    _/               |          pieces left of the pixel
+//        |    _/               |          edges left of the pixel
 //        +__/------------------+
 //      corner
 //
-// Every edge is cut in its canonical direction (left to right), the cuts are rounded onto the lattice, and
-// both cells at a border use the same cut. So two polygons that share a border have the same pieces, and a
-// point belongs to exactly one of them. A corner's own state follows from the crossings of its column below
-// it, which is what `covers` spans carry. The border between cells belongs to the right and upper one.
+// The state of each corner follows from that of the bucket's own corner:
+//
+//     +-------+-------+-------+
+//     |       |       |   \   |       along the bucket's lower border: edges that start there
+//     o-------o-------o----\--o       change all corners to their right
+//     |    /  |       |     \ |
+//     |   /   |       |      \|       up a column: edges that leave its left border change
+//     o--/----o-------o-------o       all corners above
+//   known  change  change
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "decalgl/core/span.h"
-#include "technique/static_decals/cell_records.h"
+#include "technique/static_decals/cell_list_builder.h"
 
 namespace decalgl {
 
 class RingCells {
 public:
-    explicit RingCells(CellRecords& records) : records_(&records) {}
+    explicit RingCells(CellListBuilder& lists) : lists_(&lists) {}
 
-    // Adds one ring of the current feature, closing it if it is open. `coordinates`: x, y of its vertices.
-    void add_ring(Span<const double> coordinates);
+    // Begins a polygon in the bucket that `lists` is at.
+    void begin(uint32_t slot);
 
-    // Ends the feature: marks the cells whose lower left corner is inside.
-    void finish_feature();
+    // Adds an edge in the ring's direction. Points are counted from the bucket's corner.
+    void add_edge(LatticePoint from, LatticePoint to);
+
+    // Ends the polygon: marks the cells whose corner is inside.
+    void finish(bool bucket_corner_inside);
 
 private:
-    void add_edge(LatticePoint a, LatticePoint b);
-    void add_column_piece(int32_t column, LatticePoint a, LatticePoint b);
-    void add_cell_piece(int32_t column, int32_t row, LatticePoint a, LatticePoint b);
-    void add_crossing(int32_t column, int32_t row);
+    struct Piece {
+        int64_t column, row;
+        LatticePoint from, to;
+    };
 
-    CellRecords* records_;
-    std::vector<uint32_t> crossings_;  // column << 16 | (row + 1); row -1 is everything below the grid
+    void follow_lowest_row(const Piece& piece);
+    void add_piece(const Piece& piece);
+
+    CellListBuilder* lists_;
+    SquareRange cells_{};
+    uint32_t slot_ = 0;
+    std::vector<Piece> pieces_;
+    std::array<uint64_t, 1 << FINEST_LEVEL> crossed_rows_{};  // of each column's left border; a bit a row
+    uint64_t changed_columns_ = 0;                            // corners of the lowest row; a bit a column
+    uint64_t crossed_columns_ = 0;                            // those with crossed rows
 };
 
 }  // namespace decalgl

@@ -8,6 +8,29 @@
 
 namespace decalgl {
 
+namespace {
+
+// Modulo 2^32: what the shader counts from it is small again.
+glm::ivec2 wrapped(int64_t x, int64_t y) {
+    return {static_cast<int32_t>(static_cast<uint32_t>(x)), static_cast<int32_t>(static_cast<uint32_t>(y))};
+}
+
+void set_grid(const BucketGrid& grid, gl::Program& program) {
+    const double quanta_per_block = grid.positions.block_size / grid.quantum;
+    const auto blocks_of = [&](int64_t buckets) {
+        return static_cast<int64_t>(static_cast<double>(buckets) * (BUCKET_QUANTA / quanta_per_block));
+    };
+    program.set("grid_size", glm::ivec2(grid.columns, grid.rows));
+    program.set("block_shift", static_cast<int>(std::lrint(std::log2(quanta_per_block))));
+    program.set("first_quantum",
+                wrapped(grid.first_bucket_x * BUCKET_QUANTA, grid.first_bucket_y * BUCKET_QUANTA));
+    if (quanta_per_block < 1.0)
+        program.set("first_block", wrapped(blocks_of(grid.first_bucket_x), blocks_of(grid.first_bucket_y)));
+    program.set("quanta_per_metre", static_cast<float>(1.0 / grid.quantum));
+}
+
+}  // namespace
+
 std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& input,
                                                          Progress& progress) const {
     return build_decals(input, progress);
@@ -15,10 +38,12 @@ std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& i
 
 void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
-    cell_starts_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI,
-                                           Span<const uint32_t>(prepared_->cell_starts));
-    cell_texels_ = gl::TextureBuffer::from(memory, "static: pieces", GL_RG32UI,
-                                           Span<const CellTexel>(prepared_->texels));
+    buckets_ = gl::TextureBuffer::from(memory, "static: buckets", GL_R32UI,
+                                       Span<const uint32_t>(prepared_->bucket_entries));
+    cells_ =
+        gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, Span<const uint32_t>(prepared_->cells));
+    texels_ =
+        gl::TextureBuffer::from(memory, "static: words", GL_RGBA32UI, Span<const uint32_t>(prepared_->words));
     styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, prepared_->styles);
     no_vertices_ = gl::VertexArray::create();
 }
@@ -26,8 +51,9 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const Memory
 UpdateReport StaticDecals::update(const View&) {
     UpdateReport report;
     report.pieces = prepared_->pieces;
-    report.bytes = cell_starts_.buffer().bytes() + cell_texels_.buffer().bytes() + styles_.buffer().bytes();
-    report.longest_walk = prepared_->longest_cell;
+    report.bytes = buckets_.buffer().bytes() + cells_.buffer().bytes() + texels_.buffer().bytes() +
+                   styles_.buffer().bytes();
+    report.longest_walk = prepared_->longest_list;
     return report;
 }
 
@@ -35,16 +61,18 @@ void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::Progra
     gl::Flags flags;
     if (prepared_->has_translucency)
         flags.insert("TRANSLUCENT");
+    else if (prepared_->has_one_color && view.antialias == Antialias::none)
+        flags.insert("ONE_COLOR");
     if (view.antialias == Antialias::coverage)
         flags.insert("COVERAGE");
-    draw_full_screen(std::move(flags), view, gbuffer, programs);
+    draw_full_screen(std::move(flags), gbuffer, programs);
 }
 
-void StaticDecals::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
-    draw_full_screen({"IDS"}, view, gbuffer, programs);
+void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+    draw_full_screen({"IDS"}, gbuffer, programs);
 }
 
-void StaticDecals::draw_full_screen(gl::Flags flags, const View& view, const GBufferView& gbuffer,
+void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
                                     gl::ProgramLibrary& programs) {
     const bool one_width = prepared_->has_lines && prepared_->narrowest == prepared_->widest;
     if (prepared_->has_lines)
@@ -54,7 +82,6 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const View& view, const GBu
     if (prepared_->has_polygons)
         flags.insert("RINGS");
     gl::Program& program = programs.get("static_decals", flags);
-    const CellGrid& grid = prepared_->grid;
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
@@ -62,22 +89,23 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const View& view, const GBu
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
     }
-    program.set("cell_starts", 2);
-    cell_starts_.bind(2);
-    program.set("cell_texels", 3);
-    cell_texels_.bind(3);
-    program.set("decal_styles", 4);
-    styles_.bind(4);
-    program.set("cell_shift",
-                static_cast<int>(std::lrint(std::log2(grid.cell_size / view.positions.block_size))));
-    program.set("quanta_per_metre", static_cast<float>(1.0 / grid.quantum));
-    program.set("first_cell", glm::ivec2(grid.first_cell_x, grid.first_cell_y));
-    program.set("grid_size", glm::ivec2(grid.columns, grid.rows));
-    program.set("bucket_columns", grid.bucket_columns);
+    program.set("bucket_entries", 2);
+    buckets_.bind(2);
+    program.set("cell_entries", 3);
+    cells_.bind(3);
+    program.set("cell_texels", 4);
+    texels_.bind(4);
+    program.set("decal_styles", 5);
+    styles_.bind(5);
+    set_grid(prepared_->grid, program);
+    if (flags.count("ONE_COLOR") != 0) {
+        const std::array<uint8_t, 4> color = prepared_->styles.front().color;
+        program.set("one_color", glm::vec4(color[0], color[1], color[2], color[3]) / 255.0F);
+    }
     if (one_width) {
         const float scale = std::ldexp(1.0F, -prepared_->largest_scale);
         program.set("line_scale", scale);
-        program.set("line_half_width2", prepared_->widest * scale * prepared_->widest * scale);
+        program.set("line_half_width", prepared_->widest * scale);
     }
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -20,12 +20,12 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
-    void draw_full_screen(gl::Flags flags, const View& view, const GBufferView& gbuffer,
-                          gl::ProgramLibrary& programs);
+    void draw_full_screen(gl::Flags flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
 
     std::shared_ptr<const PreparedDecals> prepared_;
-    gl::TextureBuffer cell_starts_;
-    gl::TextureBuffer cell_texels_;
+    gl::TextureBuffer buckets_;
+    gl::TextureBuffer cells_;
+    gl::TextureBuffer texels_;
     gl::TextureBuffer styles_;
     gl::VertexArray no_vertices_;
 };

@@ -1,0 +1,52 @@
+// One bucket after the other: gathers the edges that references name, chooses how many cells the bucket has,
+// and puts rings and lines into them, feature by feature from the topmost.
+#pragma once
+
+#include <vector>
+
+#include "technique/static_decals/bucket_references.h"
+#include "technique/static_decals/cell_list_builder.h"
+#include "technique/static_decals/line_cells.h"
+#include "technique/static_decals/ring_cells.h"
+
+namespace decalgl {
+
+class BucketBuilder {
+public:
+    explicit BucketBuilder(const OrderedFeatures& features)
+        : features_(features), lattice_(*features.grid), rings_(lists_), lines_(lists_) {}
+
+    // Appends the lists of a bucket to the chunk. `runs` in draw order, sorted into buckets.
+    void build(uint32_t bucket, Span<const BucketReferences> runs, CellChunk& chunk);
+
+private:
+    // Edges of one feature that follow each other, between points_[first] .. points_[last].
+    struct Stretch {
+        uint32_t slot;
+        size_t first;
+        size_t last;
+    };
+
+    void gather(uint32_t bucket, Span<const BucketReferences> runs);
+    void gather_stretch(const BucketReference& reference, const LatticePoint& corner);
+    void prefetch(const BucketReference& reference) const;
+    int choose_level() const;
+    void add_polygon(uint32_t slot, Span<const Stretch> stretches, bool corner_inside);
+    void add_line(uint32_t slot, Span<const Stretch> stretches);
+    Span<const LatticePoint> points_of(const Stretch& stretch) const {
+        return {points_.data() + stretch.first, stretch.last - stretch.first + 1};
+    }
+
+    OrderedFeatures features_;
+    Lattice lattice_;
+    CellListBuilder lists_;
+    RingCells rings_;
+    LineCells lines_;
+    std::vector<Stretch> stretches_;
+    std::vector<uint32_t> corners_;     // slots of the polygons that the bucket's corner is inside of
+    std::vector<LatticePoint> points_;  // in quanta from the bucket's corner
+    int64_t length_ = 0;                // of all edges in the bucket, |dx| + |dy|, in quanta
+    double reach_ = 0.0;                // sum of all segments' half widths, in quanta
+};
+
+}  // namespace decalgl
