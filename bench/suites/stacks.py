@@ -1,0 +1,47 @@
+"""Polygons that overlap, up to 2000 of them, the case that brings CesiumJS from 60 to 9 frames a second (#13726).
+
+opaque_stack    opaque polygons that overlap ÷ as many side by side
+half_ms         translucent at alpha 0.5, where a few hide what is behind
+faint_ms        as faint as 8 bits can be, so that every one of them shows
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import decalgl as dg
+
+from .. import shapes
+from ..measure import drawing, interleaved
+
+if TYPE_CHECKING:
+    from ..records import Records
+    from ..workload import Workload
+
+BOUNDS = (0.0, 0.0, 16_000.0, 9_000.0)
+CAMERA = dg.Camera.top_down(BOUNDS)
+FAINTEST = 1.0 / 255.0
+
+
+def measure(work: Workload, records: Records) -> None:
+    for depth in work.depths:
+        work.say(f"{depth} overlapping polygons")
+        overlapping, apart = shapes.stack(BOUNDS, depth), shapes.disjoint(BOUNDS, depth)
+        drawn = {
+            "opaque": _scene(overlapping, 1.0),
+            "disjoint": _scene(apart, 1.0),
+            "half": _scene(overlapping, 0.5),
+            "faint": _scene(overlapping, FAINTEST),
+        }
+        measures = [drawing(work.renderer(scene), CAMERA, "none", name) for name, scene in drawn.items()]
+        times = interleaved(min(work.runs, 3), *measures)
+        ratio = times["opaque_ms"] / times["disjoint_ms"]
+        records.at(f"stack of {depth}", "overview").update(polygons=depth, **times, opaque_stack=ratio)
+
+
+def _scene(table: dg.FeatureTable, alpha: float) -> dg.Scene:
+    scene = dg.Scene(dg.Terrain.flat(BOUNDS))
+    scene.add_polygons(table, column=np.arange(len(table)), cmap="turbo", alpha=alpha)
+    return scene
