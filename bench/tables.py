@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Columns = Mapping[str, str]
 
 TEXTS = ("scene", "view")
-# What the README shows, the most telling of all views.
+# The README leaves out the view from far away.
 README_VIEWS = ("overview", "oblique", "close", "worst")
 
 WHERE = {"scene": "{scene}", "view": "{view}"}

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from ..records import Records
     from ..workload import Workload
 
+VIEWS = ("overview", "oblique", "close", "worst")
+
 
 def measure(work: Workload, records: Records) -> None:
     names = list(work.sizes)
@@ -20,7 +22,8 @@ def measure(work: Workload, records: Records) -> None:
     for kind in KINDS:
         work.say(f"{kind} {largest} ÷ {smallest}")
         small, large = (work.renderer(work.scene(kind, size)) for size in (smallest, largest))
-        for view, camera in work.views.items():
+        for view in VIEWS:
+            camera = work.views[view]
             times = interleaved(
                 work.runs_of(largest),
                 drawing(small, camera, "none", "scale_small"),
