@@ -1,4 +1,4 @@
-"""Measures the ratios that the project promises and writes them as a table and as bench/results/latest.json."""
+"""Measures the ratios that the project promises; shows them and writes bench/results/latest.json."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the pictures of the benchmark are taken from: views of San Francisco bay, and places found by their data.
+"""Where the pictures are taken from: views of San Francisco bay, and places found by what lies there.
 
 overview    all of the map from above                   worst       2 km where the map is fullest
 oblique     over the bay to the horizon                 far         the map as high as 200 of 1080 pixels
@@ -47,7 +47,7 @@ def worst(ground: dg.Terrain, points: Points) -> dg.Camera:
 
 
 def interior(ground: dg.Terrain, points: Points) -> dg.Camera:
-    """Onto the place that is farthest from all vertices, holes and rims, with nothing of them in the picture."""
+    """Onto the place that is farthest from all vertices, holes and rims, and none of them in the picture."""
     x, y, room = _emptiest(ground, points)
     return _showing(_on_ground(ground, x, y), min(WORST_WIDTH, room / 2.0), elevation=45)
 
@@ -80,7 +80,7 @@ def _fullest(points: Points, bounds: Bounds, divisions: int) -> Bounds:
 
 
 def _emptiest(ground: dg.Terrain, points: Points, divisions: int = 256) -> tuple[float, float, float]:
-    """(x, y, metres of free room around): boxes with vertices or holes grow box by box until one place is left."""
+    """(x, y, metres of free room around): boxes with vertices or holes grow until one place is left."""
     x0, y0, x1, y1 = ground.bounds
     rows, columns = np.nonzero(np.isnan(ground.z))
     holes = np.column_stack([x0 + ground.dx * columns, y1 - ground.dy * rows])

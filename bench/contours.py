@@ -36,7 +36,7 @@ def isolines(ground: dg.Terrain, step: float, path: Path, say: Say) -> Arrays:
 
 
 def isobands(ground: dg.Terrain, step: float, path: Path, say: Say) -> Arrays:
-    """`coordinates`, `part_offsets` and `feature_offsets` of polygons, and the `heights` that they reach up to."""
+    """`coordinates`, `part_offsets`, `feature_offsets` of polygons, and the `heights` they reach up to."""
     return _kept(path, lambda: _trace_bands(ground, step, say), say)
 
 

@@ -1,7 +1,7 @@
 """The figures in the documentation, written from bench/results/latest.json: `python -m bench --docs`.
 
-What stands between the lines <!-- bench:NAME --> and <!-- /bench --> of a page is replaced by what `tables.BLOCKS`
-makes for NAME.
+What stands between the lines <!-- bench:NAME --> and <!-- /bench --> of a page is replaced by what
+`tables.BLOCKS` makes for NAME.
 """
 
 from __future__ import annotations

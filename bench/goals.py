@@ -55,9 +55,9 @@ RATIOS = {
     "scale_coverage": Ratio(
         "{scale_coverage_large_ms:.1f} ms ÷ {scale_coverage_small_ms:.1f} ms, coverage", most=1.2
     ),
-    "bvh_grid": Ratio("{bvh_ms:.0f} ms ÷ {grid_ms:.1f} ms", least=6.0, scenes="isolines"),
-    "bvh_grid_min": Ratio("of all views", least=6.0, scenes="isolines"),
-    "bvh_grid_median": Ratio("of all views", least=6.0, scenes="isolines"),
+    "bvh_grid": Ratio("{technique} {bvh_ms:.0f} ms ÷ {grid_ms:.1f} ms", least=6.0, scenes="isolines"),
+    "bvh_grid_min": Ratio("{technique}, of all views", least=6.0, scenes="isolines"),
+    "bvh_grid_median": Ratio("{technique}, of all views", least=6.0, scenes="isolines"),
     "layer": Ratio("median step of frames", most=1.15),
     "empty": Ratio("{empty_ms:.0f} ms ÷ {ground_ms:.0f} ms", most=1.05),
     "interior": Ratio("{bands_none_ms:.1f} ms ÷ one rectangle {rectangle_none_ms:.1f} ms, none", most=1.1),

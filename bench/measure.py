@@ -1,4 +1,4 @@
-"""Measuring: what is compared takes turns and medians are reported, so that a drifting machine hits all alike."""
+"""Measuring: what is compared takes turns, so a drifting machine hits all alike; medians are reported."""
 
 from __future__ import annotations
 

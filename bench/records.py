@@ -10,8 +10,9 @@ Record = dict[str, Any]
 class Records:
     """Records in the order in which they were begun.
 
-    scene: such as "isolines 5M". technique: "static", or "static_bvh" for the papers' structures. view: its name,
-    None for what does not depend on one.
+    scene: such as "isolines 5M".
+    technique: "static"; "bvh" and "thoeny" for the papers' structures.
+    view: its name, None for what does not depend on one.
     """
 
     def __init__(self) -> None:

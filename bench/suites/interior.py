@@ -1,4 +1,4 @@
-"""The inside of a polygon: a picture within one iso-band ÷ the same picture within a rectangle over the whole map.
+"""The inside of a polygon: a picture within one iso-band ÷ the same picture within a rectangle over the map.
 
 Neither shows an edge. The rectangle is the least that an index can be asked: one header in every cell.
 """

@@ -1,4 +1,4 @@
-"""Peak memory while preparing ÷ the input, 16 bytes a vertex and the offsets, each scene in a process of its own."""
+"""Peak memory while preparing ÷ the input, 16 bytes a vertex and offsets, each in a process of its own."""
 
 from __future__ import annotations
 

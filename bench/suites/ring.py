@@ -1,6 +1,7 @@
-"""One ring of millions of vertices with thousands of holes: `ring` is preparing it ÷ preparing small rings, per vertex.
+"""One ring of millions of vertices with thousands of holes.
 
-The small rings are the iso-bands of about as many segments. S is as at the other views.
+ring    preparing it ÷ preparing the small rings of iso-bands, by vertices
+S       as at the other views
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Every scene from everywhere.
 
-S           layers without anti-aliasing ÷ floor, a pass that reads the depth and writes a colour for every pixel
+S           layers without anti-aliasing ÷ floor, a pass that reads depth and writes a colour everywhere
 S_levels    layers with coverage, to which coarser levels of detail are open, ÷ floor
 AA          layers with coverage ÷ without
 levels      layers with coverage far away ÷ in the overview: many segments share a pixel

@@ -1,4 +1,4 @@
-"""The benchmark runs: every suite on a few hills and a tiny picture, through to its tables. Figures mean nothing."""
+"""The benchmark runs: every suite on a few hills and a tiny picture, through to its tables."""
 
 from __future__ import annotations
 
