@@ -58,7 +58,8 @@ def main() -> None:
     console.print(report.table(records, work.picture))
     console.print(", ".join(f"{name}: {value}" for name, value in machine.items()))
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
-    arguments.out.write_text(json.dumps({"machine": machine, "records": records}, indent=2) + "\n")
+    results = {"machine": machine, "runs": work.runs, "records": records}
+    arguments.out.write_text(json.dumps(results, indent=2) + "\n")
     console.print(f"Written to {arguments.out}")
     if arguments.out == docs.RESULTS:
         write_docs(console)

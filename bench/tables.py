@@ -138,7 +138,7 @@ def machine(results: Results) -> str:
     found = results["machine"]
     return (
         f"Measured on {found['cores']} cores of {_article(found['processor'])} with {found['driver']}, at"
-        " 1920 x 1080, as medians."
+        f" 1920 x 1080, as medians; runs: {results['runs']}."
     )
 
 

@@ -77,7 +77,7 @@ def test_the_report_shows_them(bench: Any, records: list[dict[str, Any]]) -> Non
 
 def test_the_documentation_can_be_made_of_them(bench: Any, records: list[dict[str, Any]]) -> None:
     _, modules = bench
-    results = {"machine": {"cores": 2, "processor": "x", "driver": "y"}, "records": records}
+    results = {"machine": {"cores": 2, "processor": "x", "driver": "y"}, "runs": 1, "records": records}
     for block in modules.tables.BLOCKS.values():
         assert block(results).startswith("| ")
 
