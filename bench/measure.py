@@ -1,4 +1,4 @@
-"""Measuring: what is compared takes turns and medians are reported, so that a drifting machine hits all alike."""
+"""Measuring: what is compared takes turns, so a drifting machine hits all alike; medians are reported."""
 
 from __future__ import annotations
 
@@ -15,86 +15,94 @@ from decalgl import _core
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    Times = dict[str, float]
+    Measure = Callable[[], Times]
 
-def interleaved(runs: int, *measures: Callable[[], float]) -> list[float]:
-    """The median of each measure over `runs` rounds in which each runs once; a first round is thrown away."""
+# A picture that costs next to nothing, for what a frame tells about its scene.
+SMALL_PICTURE = (16, 16)
+
+
+def interleaved(runs: int, *measures: Measure) -> Times:
+    """The medians of all that the measures give, over `runs` rounds in which each runs once.
+
+    A first round is thrown away.
+    """
     for measure in measures:
         measure()
-    rounds = [[measure() for measure in measures] for _ in range(runs)]
-    return [statistics.median(column) for column in zip(*rounds, strict=True)]
+    rounds = [{name: ms for measure in measures for name, ms in measure().items()} for _ in range(runs)]
+    return {name: statistics.median(times[name] for times in rounds) for name in rounds[0]}
 
 
-def pass_times(frame: dg.Frame) -> dict[str, float]:
-    """Milliseconds of each pass of a frame."""
-    return {one["name"]: one["ms"] for one in frame.stats.passes}
+def drawing(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str) -> Measure:
+    """Measures a frame: `name`_ms of the layers' passes, `name`_ground_ms of terrain and composing."""
+
+    def measure() -> Times:
+        frame = draw(renderer, camera, antialias)
+        layers = sum(one["ms"] for one in frame.stats.passes if one["name"].startswith("static"))
+        ground = sum(one["ms"] for one in frame.stats.passes if one["name"] in ("terrain", "compose"))
+        return {f"{name}_ms": layers, f"{name}_ground_ms": ground}
+
+    return measure
 
 
-def preprocessing(scene: dg.Scene, size: tuple[int, int], camera: dg.Camera, runs: int) -> dict[str, float]:
-    """Times of preprocessing the layers, of sorting as many keys, and their ratio P."""
-    stats: dict[str, Any] = {}
+def floor(renderer: dg.Renderer) -> Measure:
+    """Measures the pass that all others are compared with; the renderer must have drawn a frame."""
+    return lambda: {"floor_ms": renderer.time_floor()}
 
-    def preprocess() -> float:
-        renderer = dg.Renderer(size=size, antialias="none")
+
+def draw(renderer: dg.Renderer, camera: dg.Camera, antialias: str) -> dg.Frame:
+    """A frame of a renderer's scene, in the size that it has."""
+    renderer.set_picture(renderer.size, antialias)
+    renderer.update(camera)
+    return renderer.render()
+
+
+def preparing(scene: dg.Scene, name: str, stats: dict[str, Any], **options: Any) -> Measure:
+    """Measures preparing a scene: `name`_ms of the layers, `name`_terrain_ms of the terrain.
+
+    stats: filled with those of a frame.
+    """
+
+    def measure() -> Times:
+        renderer = dg.Renderer(size=SMALL_PICTURE, **options)
         renderer.preprocess(scene)
-        renderer.update(camera)
+        renderer.update(dg.Camera.top_down(scene.terrain.bounds))
         stats.update(renderer.render().stats.to_dict())
-        return float(stats["preprocess"]["static"])
+        parts = stats["preprocess"]
+        layers = sum(ms for part, ms in parts.items() if part != "terrain")
+        return {f"{name}_ms": layers, f"{name}_terrain_ms": parts["terrain"]}
 
-    segments = sum(len(layer.features.coords) for layer in scene.layers)
-    built, sorted_ = interleaved(runs, preprocess, lambda: _core.time_radix_sort(segments, 0))
+    return measure
+
+
+def preprocessing(scene: dg.Scene, runs: int, *others: Measure, **options: Any) -> Times:
+    """Counts, the times of preparing the layers and of sorting as many keys, and their ratio P.
+
+    others: further measures that take turns with these.
+    """
+    vertices = vertices_of(scene)
+    stats: dict[str, Any] = {}
+    times = interleaved(
+        runs,
+        preparing(scene, "preprocess", stats, **options),
+        lambda: {"radix_sort_ms": _core.time_radix_sort(vertices, 0)},
+        *others,
+    )
     counts = stats["counts"]
     return {
+        "vertices": vertices,
         "segments": counts["segments"],
         "pieces": counts["pieces"],
-        "quantum_m": counts["quantum_m"],
-        "preprocess_ms": built,
-        "radix_sort_ms": sorted_,
-        "P": built / sorted_,
+        "quantum_mm": 1000.0 * counts["quantum_m"],
+        **times,
+        "P": times["preprocess_ms"] / times["radix_sort_ms"],
         "bytes_per_segment": counts["prepared_bytes"] / counts["segments"],
-        "terrain_preprocess_ms": stats["preprocess"]["terrain"],
     }
 
 
-def drawing(
-    full: dg.Renderer, empty: dg.Renderer, size: tuple[int, int], camera: dg.Camera, runs: int
-) -> dict[str, float]:
-    """Pass times at one view and the ratios S, AA and empty."""
-
-    def draw(renderer: dg.Renderer, antialias: str) -> dict[str, float]:
-        renderer.set_picture(size, antialias)
-        renderer.update(camera)
-        return pass_times(renderer.render())
-
-    passes: dict[str, float] = {}
-
-    def static(antialias: str) -> Callable[[], float]:
-        def run() -> float:
-            passes.update(draw(full, antialias))
-            return passes["static"]
-
-        return run
-
-    def bare() -> float:
-        found = draw(empty, "none")
-        return found["terrain"] + found["compose"]
-
-    def ground() -> float:
-        found = draw(full, "none")
-        return found["terrain"] + found["compose"]
-
-    floor, none, coverage, empty_ms, ground_ms = interleaved(
-        runs, full.time_floor, static("none"), static("coverage"), bare, ground
-    )
-    return {
-        "floor_ms": floor,
-        "static_none_ms": none,
-        "static_coverage_ms": coverage,
-        "terrain_and_compose_ms": ground_ms,
-        "empty_ms": empty_ms,
-        "S": none / floor,
-        "AA": coverage / none,
-        "empty": empty_ms / ground_ms,
-    }
+def vertices_of(scene: dg.Scene) -> int:
+    """Of all layers."""
+    return sum(len(layer.features.coords) for layer in scene.layers)
 
 
 def machine() -> dict[str, Any]:

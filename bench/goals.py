@@ -1,0 +1,69 @@
+"""The ratios by the names that they have in the records, the times that they come from, and their goals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .records import Record
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """A ratio of the records.
+
+    source: what it is made of, to be formatted with its record.
+    most, least: its goal, None where it has none.
+    worst: the goal at the worst view, where that is another. scenes: those that the goal is set for.
+    """
+
+    source: str
+    most: float | None = None
+    least: float | None = None
+    worst: float | None = None
+    scenes: str = ""
+
+    def goal(self, record: Record) -> str:
+        """The goal in words, empty where there is none."""
+        most, least = self._limits(record)
+        return f"≤ {most:g}" if most is not None else f"≥ {least:g}" if least is not None else ""
+
+    def reached(self, record: Record, value: float) -> bool | None:
+        """Whether a record's ratio reaches the goal; None where there is none."""
+        most, least = self._limits(record)
+        if most is None and least is None:
+            return None
+        return (most is None or value <= most) and (least is None or value >= least)
+
+    def _limits(self, record: Record) -> tuple[float | None, float | None]:
+        if not record["scene"].startswith(self.scenes):
+            return None, None
+        most = self.worst if self.worst is not None and record["view"] == "worst" else self.most
+        return most, self.least
+
+
+RATIOS = {
+    "P": Ratio("{preprocess_ms:.0f} ms ÷ radix sort {radix_sort_ms:.0f} ms", most=3.0),
+    "bytes_per_segment": Ratio("{segments:,.0f} segments in {pieces:,.0f} pieces", most=32.0),
+    "peak_memory": Ratio("{peak_bytes:,.0f} bytes ÷ input {input_bytes:,.0f} bytes", most=3.0),
+    "S": Ratio("{none_ms:.1f} ms ÷ floor {floor_ms:.1f} ms", most=5.0, worst=8.0),
+    "S_levels": Ratio("{coverage_ms:.1f} ms ÷ floor {floor_ms:.1f} ms", most=5.0, worst=8.0),
+    "AA": Ratio("{coverage_ms:.1f} ms ÷ {none_ms:.1f} ms", most=1.25),
+    "levels": Ratio("{coverage_ms:.1f} ms ÷ coverage in the overview", most=1.0),
+    "scale": Ratio("{scale_large_ms:.1f} ms ÷ {scale_small_ms:.1f} ms, none", most=1.2),
+    "scale_coverage": Ratio(
+        "{scale_coverage_large_ms:.1f} ms ÷ {scale_coverage_small_ms:.1f} ms, coverage", most=1.2
+    ),
+    "bvh_grid": Ratio("{technique} {bvh_ms:.0f} ms ÷ {grid_ms:.1f} ms", least=6.0, scenes="isolines"),
+    "bvh_grid_min": Ratio("{technique}, of all views", least=6.0, scenes="isolines"),
+    "bvh_grid_median": Ratio("{technique}, of all views", least=6.0, scenes="isolines"),
+    "layer": Ratio("median step of frames", most=1.15),
+    "empty": Ratio("{empty_ms:.0f} ms ÷ {ground_ms:.0f} ms", most=1.05),
+    "interior": Ratio("{bands_none_ms:.1f} ms ÷ one rectangle {rectangle_none_ms:.1f} ms, none", most=1.1),
+    "interior_coverage": Ratio(
+        "{bands_coverage_ms:.1f} ms ÷ one rectangle {rectangle_coverage_ms:.1f} ms, coverage", most=1.1
+    ),
+    "opaque_stack": Ratio("{opaque_ms:.1f} ms ÷ side by side {disjoint_ms:.1f} ms", most=2.0),
+    "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
+}

@@ -1,0 +1,36 @@
+"""The questions that the benchmark asks, each a module with a function `measure(work, records)`.
+
+prepare      P, bytes a segment: what does an index cost?
+views        S, S_levels, AA, levels: what does a picture cost, from everywhere?
+memory       peak_memory: how much does preparing take beside the input?
+scale        scale: does a larger map cost more at the same view?
+indexes      bvh_grid: how much faster is the grid than the papers' trees?
+layers       layer, empty: what does one more layer cost, and none?
+interior     interior: what does the inside of a large polygon cost?
+stacks       opaque_stack: what do thousands of overlapping polygons cost?
+ring         ring: what does one enormous ring cost?
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from . import indexes, interior, layers, memory, prepare, ring, scale, stacks, views
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..records import Records
+    from ..workload import Workload
+
+SUITES: dict[str, Callable[[Workload, Records], None]] = {
+    "prepare": prepare.measure,
+    "views": views.measure,
+    "memory": memory.measure,
+    "scale": scale.measure,
+    "indexes": indexes.measure,
+    "layers": layers.measure,
+    "interior": interior.measure,
+    "stacks": stacks.measure,
+    "ring": ring.measure,
+}

@@ -1,0 +1,171 @@
+"""The blocks of the documentation: Markdown tables made of the records of a run.
+
+A table is described by its columns, each a heading and a format of the record that a row is made of.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from .records import Record
+
+    Results = Mapping[str, Any]
+    Columns = Mapping[str, str]
+
+TEXTS = ("scene", "view", "index")
+# The README leaves out the view from far away.
+README_VIEWS = ("overview", "oblique", "close", "worst")
+
+WHERE = {"scene": "{scene}", "view": "{view}"}
+VIEWS = {
+    **WHERE,
+    "floor": "{floor_ms:.1f} ms",
+    "`none`": "{none_ms:.1f} ms",
+    "S": "{S:.1f}",
+    "`coverage`": "{coverage_ms:.0f} ms",
+    "S_levels": "{S_levels:.1f}",
+    "AA": "{AA:.1f}",
+}
+SUMMARY = {
+    **WHERE,
+    "layers, `none`": "{none_ms:.0f} ms",
+    "÷ floor": "{S:.1f}",
+    "layers, `coverage`": "{coverage_ms:.0f} ms",
+    "terrain and compose": "{coverage_ground_ms:.0f} ms",
+}
+PREPARED = {
+    "scene": "{scene}",
+    "segments": "{segments:,.0f}",
+    "pieces": "{pieces:,.0f}",
+    "preprocess": "{preprocess_ms:.0f} ms",
+    "radix sort": "{radix_sort_ms:.1f} ms",
+    "P": "{P:.1f}",
+    "bytes a segment": "{bytes_per_segment:.1f}",
+}
+MEMORY = {"peak ÷ input": "{peak_memory:.1f}", "quantum": "{quantum_mm:.1f} mm"}
+INDEX = {"index": "`{technique}`"}
+INDEXES = {
+    **WHERE,
+    **INDEX,
+    "takes": "{bvh_ms:.0f} ms",
+    "`grid`": "{grid_ms:.1f} ms",
+    "÷ `grid`": "{bvh_grid:.1f}",
+}
+SCALE = {
+    **WHERE,
+    "`none`": "{scale_large_ms:.1f} ms",
+    "÷ smallest": "{scale:.2f}",
+    "`coverage`": "{scale_coverage_large_ms:.0f} ms",
+    "÷ smallest, `coverage`": "{scale_coverage:.2f}",
+}
+STACKS = {
+    "polygons": "{polygons}",
+    "side by side": "{disjoint_ms:.1f} ms",
+    "opaque": "{opaque_ms:.1f} ms",
+    "÷ side by side": "{opaque_stack:.2f}",
+    "alpha 0.5": "{half_ms:.1f} ms",
+    "alpha 1/255": "{faint_ms:.1f} ms",
+}
+
+
+def summary(results: Results) -> str:
+    """For the README: isolines in milliseconds, then what preparing costs."""
+    drawn = [record for record in _having(results, "S", "isolines") if record["view"] in README_VIEWS]
+    costs = (
+        "{scene}: {segments:,.0f} segments are prepared in {preprocess_ms:.0f} ms (the terrain in"
+        " {preprocess_terrain_ms:.0f} ms) and take\n  {bytes_per_segment:.0f} bytes each; no vertex moves by"
+        " more than {quantum_mm:.0f} mm"
+    )
+    prepared = _facts(_having(results, "P", "isolines"), costs)
+    return "\n\n".join([_table(drawn, SUMMARY), prepared, machine(results)])
+
+
+def ratios(results: Results) -> str:
+    """Lines: the ratios and what they are made of."""
+    return _of_contours(results, "isolines")
+
+
+def polygons(results: Results) -> str:
+    """The same of polygons."""
+    return _of_contours(results, "iso-bands")
+
+
+def indexes(results: Results) -> str:
+    """The papers' indexes beside ours."""
+    drawn, prepared = (_having(results, name, techniques=("bvh", "thoeny")) for name in ("bvh_grid", "P"))
+    ranges = (
+        "{scene}, `{technique}`: it takes {bvh_grid_min:.1f} times as long as `grid` at the least view,"
+        " {bvh_grid_median:.1f} at the middle one"
+    )
+    tables = [_table(drawn, INDEXES), _table(prepared, {**INDEX, **PREPARED})]
+    return "\n\n".join([*tables, _facts(prepared, ranges)])
+
+
+def extremes(results: Results) -> str:
+    """Large maps, many layers, large polygons and many of them."""
+    facts = {
+        "levels": "{scene}: coverage far away takes {levels:.2f} of the overview",
+        "layer": "{scene}, {view}: one more layer takes {layer:.2f} of the frame, none {empty:.2f}",
+        "interior": "{scene}, inside one: {interior:.2f} of a rectangle over the map,"
+        " {interior_coverage:.2f} with coverage",
+        "ring": "{scene} with {holes:,} holes: prepared in {preprocess_ms:.0f} ms, {ring:.2f} of iso-bands"
+        " by vertices",
+    }
+    tables = [
+        _table(_having(results, "scale"), SCALE),
+        _table(_having(results, "opaque_stack"), STACKS),
+        _table(_having(results, "S", "ring"), VIEWS),
+    ]
+    return "\n\n".join(
+        [*tables, "\n".join(_facts(_having(results, name), text) for name, text in facts.items())]
+    )
+
+
+BLOCKS: dict[str, Callable[[Results], str]] = {
+    "summary": summary,
+    "ratios": ratios,
+    "polygons": polygons,
+    "indexes": indexes,
+    "extremes": extremes,
+}
+
+
+def machine(results: Results) -> str:
+    """One sentence: what the figures were measured on."""
+    found = results["machine"]
+    return (
+        f"Measured on {found['cores']} cores of {_article(found['processor'])} with {found['driver']}, at"
+        f" 1920 x 1080, as medians; runs: {results['runs']}."
+    )
+
+
+def _of_contours(results: Results, kind: str) -> str:
+    drawn = _having(results, "S", kind)
+    prepared = _having(results, "peak_memory", kind)
+    return "\n\n".join([_table(drawn, VIEWS), _table(prepared, {**PREPARED, **MEMORY}), machine(results)])
+
+
+def _having(
+    results: Results, value: str, scenes: str = "", techniques: Sequence[str] = ("static",)
+) -> list[Record]:
+    """The records of some techniques with a value, of scenes that begin so."""
+    records = [one for one in results["records"] if one["technique"] in techniques and value in one]
+    return [one for one in records if one["scene"].startswith(scenes)]
+
+
+def _facts(records: list[Record], sentence: str) -> str:
+    """A list with one item for each record."""
+    return "\n".join(f"- {sentence.format(**record)}." for record in records)
+
+
+def _table(records: Sequence[Record], columns: Columns) -> str:
+    rules = ["---" if heading in TEXTS else "---:" for heading in columns]
+    rows = [[column.format(**record) for column in columns.values()] for record in records]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in [list(columns), rules, *rows])
+
+
+def _article(noun: str) -> str:
+    return f"an {noun}" if noun[:1].upper() in "AEIOU" else f"a {noun}"
