@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "decalgl/core/error.h"
+#include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 #include "technique/static_decals/cell_stream_writer.h"
 #include "technique/static_decals/line_cells.h"
@@ -46,6 +47,8 @@ uint64_t segments_of(const Features& features, size_t feature) {
 }
 
 void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
+    std::vector<FeatureReference> slots;
+    std::vector<DecalStyle> styles;
     for (size_t l = input.layers.size(); l-- > 0;) {
         const Layer& layer = input.layers[l];
         const bool lines = layer.features.kind == FeatureKind::lines;
@@ -63,14 +66,15 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
                 decals.narrowest =
                     decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
             }
-            decals.slots.push_back(
-                {input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
-            decals.styles.push_back(style);
+            slots.push_back({input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
+            styles.push_back(style);
             decals.segments += segments_of(layer.features, feature);
             decals.has_translucency |= color[3] != 255;
             (lines ? decals.has_lines : decals.has_polygons) = true;
         }
     }
+    decals.slots = std::move(slots);
+    decals.styles = std::move(styles);
 }
 
 std::vector<Run> cut_into_runs(const TechniqueInput& input, const PreparedDecals& decals) {
@@ -148,12 +152,13 @@ void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& r
     const uint64_t fixed_bytes = (uint64_t{bucket_count} * BUCKET_CELLS + 1) * sizeof(uint32_t) +
                                  decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference));
     decals.charge.resize(fixed_bytes);
-    decals.cell_starts.resize(size_t{bucket_count} * BUCKET_CELLS + 1);
+    LargeArray<uint32_t> cell_starts;
+    cell_starts.resize(size_t{bucket_count} * BUCKET_CELLS + 1);
     std::vector<uint64_t> sizes(bucket_count);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
         for (size_t bucket = begin; bucket < end; ++bucket)
             sizes[bucket] = count_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles,
-                                                &decals.cell_starts[bucket * BUCKET_CELLS]);
+                                                &cell_starts[bucket * BUCKET_CELLS]);
     });
     uint64_t total = 0;
     for (uint64_t& size : sizes) {
@@ -166,16 +171,19 @@ void write_stream(const TechniqueInput& input, const std::vector<CellRecords>& r
                     "the static index would need " + format_bytes(total * sizeof(CellTexel)) +
                         ", more than one index can address; draw a smaller part of the map at once");
     decals.charge.resize(total * sizeof(CellTexel) + fixed_bytes);
-    decals.longest_cell = *std::max_element(decals.cell_starts.begin(), decals.cell_starts.end() - 1);
-    decals.texels.resize(total);
+    decals.longest_cell = *std::max_element(cell_starts.begin(), cell_starts.end() - 1);
+    LargeArray<CellTexel> texels;
+    texels.resize(total);
     progress.report(0.8);
     parallel_for(bucket_count, 16, input.threads, [&](size_t begin, size_t end) {
         for (size_t bucket = begin; bucket < end; ++bucket)
             write_bucket_texels(runs, static_cast<uint32_t>(bucket), decals.styles,
-                                static_cast<uint32_t>(sizes[bucket]),
-                                &decals.cell_starts[bucket * BUCKET_CELLS], decals.texels.data());
+                                static_cast<uint32_t>(sizes[bucket]), &cell_starts[bucket * BUCKET_CELLS],
+                                texels.data());
     });
-    decals.cell_starts.back() = static_cast<uint32_t>(total);
+    cell_starts.back() = static_cast<uint32_t>(total);
+    decals.cell_starts = std::move(cell_starts);
+    decals.texels = std::move(texels);
 }
 
 }  // namespace
@@ -198,7 +206,9 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
 }
 
 PreparedCounts PreparedDecals::counts() const {
-    return {slots.size(), segments, pieces, charge.bytes(), std::ldexp(grid.quantum, largest_scale)};
+    const size_t bytes =
+        cell_starts.size_bytes() + texels.size_bytes() + styles.size_bytes() + slots.size_bytes();
+    return {slots.size(), segments, pieces, bytes, std::ldexp(grid.quantum, largest_scale)};
 }
 
 }  // namespace decalgl

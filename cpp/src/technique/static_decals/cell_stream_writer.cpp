@@ -19,7 +19,7 @@ struct OpenCell {
 };
 
 template <typename OnGroup, typename OnPiece, typename OnCovers>
-void walk(Span<const CellRecord> records, const std::vector<DecalStyle>& styles,
+void walk(Span<const CellRecord> records, Span<const DecalStyle> styles,
           std::array<OpenCell, BUCKET_CELLS>& cells, OnGroup on_group, OnPiece on_piece, OnCovers on_covers) {
     for (const CellRecord& record : records) {
         const bool is_line = styles[record.slot].half_width > 0.0F;
@@ -50,7 +50,7 @@ void walk(Span<const CellRecord> records, const std::vector<DecalStyle>& styles,
 }  // namespace
 
 uint64_t count_bucket_texels(const std::vector<CellRecords>& runs, uint32_t bucket,
-                             const std::vector<DecalStyle>& styles, uint32_t* cell_texels) {
+                             Span<const DecalStyle> styles, uint32_t* cell_texels) {
     std::array<OpenCell, BUCKET_CELLS> cells;
     const auto nothing = [](auto&&...) {};
     for (const CellRecords& run : runs)
@@ -63,9 +63,8 @@ uint64_t count_bucket_texels(const std::vector<CellRecords>& runs, uint32_t buck
     return sum;
 }
 
-void write_bucket_texels(const std::vector<CellRecords>& runs, uint32_t bucket,
-                         const std::vector<DecalStyle>& styles, uint32_t start, uint32_t* cell_starts,
-                         CellTexel* texels) {
+void write_bucket_texels(const std::vector<CellRecords>& runs, uint32_t bucket, Span<const DecalStyle> styles,
+                         uint32_t start, uint32_t* cell_starts, CellTexel* texels) {
     std::array<OpenCell, BUCKET_CELLS> cells;
     for (size_t i = 0; i < BUCKET_CELLS; ++i) {
         const uint32_t count = cell_starts[i];

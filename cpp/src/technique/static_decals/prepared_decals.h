@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "decalgl/core/large_array.h"
+#include "decalgl/core/shared_array.h"
 #include "decalgl/technique/technique.h"
 #include "technique/static_decals/cell_grid.h"
 
@@ -32,12 +32,13 @@ public:
     PreparedCounts counts() const override;
     FeatureReference feature(uint32_t id) const override { return slots[id]; }
     std::vector<FeatureReference> query(double x, double y) const override;
+    void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
     CellGrid grid;
-    LargeArray<uint32_t> cell_starts;  // into texels, cell_count() + 1 of them
-    LargeArray<CellTexel> texels;
-    std::vector<DecalStyle> styles;
-    std::vector<FeatureReference> slots;  // topmost first
+    SharedArray<uint32_t> cell_starts;  // into texels, cell_count() + 1 of them
+    SharedArray<CellTexel> texels;
+    SharedArray<DecalStyle> styles;
+    SharedArray<FeatureReference> slots;  // topmost first
     uint64_t segments = 0;
     uint64_t pieces = 0;
     uint32_t longest_cell = 0;  // texels
@@ -47,10 +48,14 @@ public:
     bool has_polygons = false;
     bool has_lines = false;
     bool has_translucency = false;
-    MemoryCharge charge;
+    MemoryCharge charge;  // of the arrays, but for those in a mapped file
 };
 
 // Throws Error(memory) where the index would not fit into the budget or the stream, Error(cancelled).
 std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress);
+
+// What PreparedDecals::save wrote; the arrays stay in the file. Throws Error(file) where they do not fit
+// together.
+std::unique_ptr<PreparedDecals> open_decals(const ArchiveReader& archive, const std::string& prefix);
 
 }  // namespace decalgl

@@ -13,13 +13,16 @@ std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& i
     return build_decals(input, progress);
 }
 
+std::unique_ptr<const Prepared> StaticDecals::open(const ArchiveReader& archive, const std::string& prefix,
+                                                   const MemoryAccount&) const {
+    return open_decals(archive, prefix);
+}
+
 void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
-    cell_starts_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI,
-                                           Span<const uint32_t>(prepared_->cell_starts));
-    cell_texels_ = gl::TextureBuffer::from(memory, "static: pieces", GL_RG32UI,
-                                           Span<const CellTexel>(prepared_->texels));
-    styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, prepared_->styles);
+    cell_starts_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, prepared_->cell_starts.span());
+    cell_texels_ = gl::TextureBuffer::from(memory, "static: pieces", GL_RG32UI, prepared_->texels.span());
+    styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, prepared_->styles.span());
     no_vertices_ = gl::VertexArray::create();
 }
 
