@@ -162,7 +162,7 @@ def _describe_saved_scene(file: Path) -> list[Table]:
     _row(table, "bounds", _bounds(found["bounds"]))
     for name, kind, layer_rows in found["layers"]:
         _row(table, kind, f"{name}: {len(layer_rows):,} features")
-    _row(table, "size", f"{found['bytes'] / 1e6:,.1f} MB")
+    _row(table, "size", f"{found['bytes']:,} bytes")
     for name, count in found["sections"].items():
-        _row(table, f"section {name}", f"{count / 1e6:,.1f} MB")
+        _row(table, f"section {name}", f"{count:,} bytes")
     return [table]

@@ -117,7 +117,9 @@ def render(
 
 
 @app.command()
-def info(file: Annotated[Path, typer.Argument(help="A raster, a vector file, a scene file or a cache.")]) -> None:
+def info(
+    file: Annotated[Path, typer.Argument(help="A raster, a vector file, a scene file or a cache.")],
+) -> None:
     """Say what a file holds, without reading all of it."""
     console = Console(highlight=False)
     for table in _describe.describe(file):

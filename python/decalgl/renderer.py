@@ -10,7 +10,7 @@ scene ──▶ preprocess ──▶ update(camera) ──▶ render ──▶ F
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .camera import Camera
     from .scene import Layer, Scene
 
-    AnyLayer = Layer | PreparedLayer
+    AnyLayer: TypeAlias = Layer | PreparedLayer
     PathLike = str | os.PathLike[str]
 
     Rgba = tuple[float, float, float, float]

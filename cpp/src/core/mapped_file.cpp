@@ -24,8 +24,9 @@ std::string reason(int error) {
 }
 
 // The system takes a path to end at its first zero.
-bool is_path(const std::string& path) {
-    return !path.empty() && path.find('\0') == std::string::npos;
+void require_path(const std::string& path) {
+    if (path.empty() || path.find('\0') != std::string::npos)
+        throw Error(ErrorKind::file, "the path is empty or holds a zero byte; name a file");
 }
 
 class Descriptor {
@@ -46,8 +47,7 @@ private:
 }  // namespace
 
 SharedArray<uint8_t> map_file(const std::string& path) {
-    if (!is_path(path))
-        refuse_to_read(path, "this is no path");
+    require_path(path);
     // Without O_NONBLOCK, opening a pipe would wait for whoever writes to it.
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     struct stat status {};
@@ -66,8 +66,7 @@ SharedArray<uint8_t> map_file(const std::string& path) {
 }
 
 ReplacementFile::ReplacementFile(const std::string& path) : path_(path) {
-    if (!is_path(path))
-        refuse(EINVAL);
+    require_path(path);
     std::error_code error;
     const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
     if (error)

@@ -125,12 +125,12 @@ bool are_runs(const PreparedDecals& decals) {
 }
 
 bool name_slots(const PreparedDecals& decals) {
+    const size_t slots = decals.slots.size();
     return all_blocks(decals.texels.size(), [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            if (is_header(decals.texels[i]) && decals.texels[i].y >= decals.slots.size())
-                return false;
-        }
-        return true;
+        bool all = true;  // without a way out, many texels are looked at together
+        for (size_t i = begin; i < end; ++i)
+            all &= !is_header(decals.texels[i]) | (decals.texels[i].y < slots);
+        return all;
     });
 }
 
