@@ -219,7 +219,6 @@ TEST_CASE("what does not fit together is named") {
     CHECK(says("scene", 100, 9, "missing"));      // passes
     CHECK(says("layers", 4, 200, "layers"));      // length of a name
     CHECK(says("layers", 0, 2, "layers"));        // kind
-    CHECK(says("layers", 14, 255, "layers"));     // features
     CHECK(says("tiles", 3, 127, "tiles"));        // column
     CHECK(says("passes/0/technique", 0, 'S', "technique"));
     CHECK(says("passes/0/slots", 3, 255, "features"));

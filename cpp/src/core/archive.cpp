@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <set>
-#include <string_view>
 
 #include "core/mapped_file.h"
 #include "decalgl/core/error.h"
@@ -125,13 +123,12 @@ void ArchiveReader::check_header() {
 }
 
 // A digest can be forged, so the table is checked whatever its digest says.
-void ArchiveReader::check_table() const {
-    std::set<std::string_view> names;
+void ArchiveReader::check_table() {
     uint64_t end = sizeof(ArchiveHeader) + sections_.size_bytes();
     for (const ArchiveSection& section : sections_) {
         const std::string_view name = name_of(section);
         if (name.empty() || name.size() == archive_name_bytes ||
-            !std::all_of(name.begin(), name.end(), is_plain) || !names.insert(name).second)
+            !std::all_of(name.begin(), name.end(), is_plain) || !by_name_.emplace(name, &section).second)
             refuse("a section has no name of its own");
         if (section.offset % archive_alignment != 0 || section.offset < end ||
             section.offset > file_.size() || section.bytes > file_.size() - section.offset)
@@ -150,13 +147,12 @@ void ArchiveReader::verify(unsigned threads) const {
 }
 
 const ArchiveSection& ArchiveReader::find(const std::string& name, size_t element_bytes) const {
-    const auto* found = std::find_if(sections_.begin(), sections_.end(),
-                                     [&](const ArchiveSection& section) { return name_of(section) == name; });
-    if (found == sections_.end())
+    const auto found = by_name_.find(name);
+    if (found == by_name_.end())
         refuse("section '" + name + "' is missing");
-    if (found->element_bytes != element_bytes)
+    if (found->second->element_bytes != element_bytes)
         refuse("section '" + name + "' has elements of another size");
-    return *found;
+    return *found->second;
 }
 
 void ArchiveReader::refuse(const std::string& what) const {

@@ -13,8 +13,9 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <map>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -136,12 +137,13 @@ public:
 
 private:
     void check_header();
-    void check_table() const;
+    void check_table();
     const ArchiveSection& find(const std::string& name, size_t element_bytes) const;
 
     std::string path_;
     SharedArray<uint8_t> file_;  // mapped
     Span<const ArchiveSection> sections_;
+    std::map<std::string_view, const ArchiveSection*> by_name_;
 };
 
 }  // namespace decalgl

@@ -1,15 +1,14 @@
 #include "frame/prepared_file.h"
 
-#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
-#include <limits>
+#include <system_error>
 #include <utility>
 
 #include "core/archive.h"
 #include "decalgl/core/error.h"
-#include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 
 namespace decalgl {
@@ -30,9 +29,8 @@ static_assert(sizeof(SceneRecord) == 104, "saved as it is");
 struct LayerRecord {
     uint32_t kind;
     uint32_t name_bytes;
-    uint64_t features;
 };
-static_assert(sizeof(LayerRecord) == 16, "saved as it is");
+static_assert(sizeof(LayerRecord) == 8, "saved as it is");
 
 constexpr size_t block_items = 1 << 18;
 
@@ -62,35 +60,34 @@ std::string pass_prefix(size_t pass) {
     return "passes/" + std::to_string(pass) + "/";
 }
 
-// Layers in three arrays, however many there are.
-struct LayerArrays {
+std::string rows_of(size_t layer) {
+    return "layers/" + std::to_string(layer) + "/rows";
+}
+
+void save_layers(const std::vector<PreparedLayer>& layers, ArchiveWriter& archive) {
     std::vector<LayerRecord> records;
     std::string names;
-    LargeArray<int64_t> rows;
-
-    explicit LayerArrays(const std::vector<PreparedLayer>& layers) {
-        for (const PreparedLayer& layer : layers) {
-            records.push_back({static_cast<uint32_t>(layer.kind), static_cast<uint32_t>(layer.name.size()),
-                               layer.rows.size()});
-            names += layer.name;
-            rows.insert(rows.end(), layer.rows.begin(), layer.rows.end());
-        }
+    for (size_t i = 0; i < layers.size(); ++i) {
+        records.push_back(
+            {static_cast<uint32_t>(layers[i].kind), static_cast<uint32_t>(layers[i].name.size())});
+        names += layers[i].name;
+        archive.add(rows_of(i), layers[i].rows.span());
     }
-};
+    archive.add_copy("layers", Span<const LayerRecord>(records));
+    archive.add_text("names", names);
+}
 
 std::vector<PreparedLayer> read_layers(const ArchiveReader& archive) {
-    const SharedArray<int64_t> rows = archive.array<int64_t>("rows");
     const std::string names = archive.text("names");
     std::vector<PreparedLayer> layers;
-    size_t row = 0, letter = 0;
+    size_t letter = 0;
     for (const LayerRecord& record : archive.array<LayerRecord>("layers")) {
         if (record.kind > static_cast<uint32_t>(FeatureKind::lines) ||
-            record.name_bytes > names.size() - letter || record.features > rows.size() - row)
-            archive.refuse("its layers do not fit their names and rows");
+            record.name_bytes > names.size() - letter)
+            archive.refuse("its layers make no sense");
         layers.push_back({names.substr(letter, record.name_bytes), static_cast<FeatureKind>(record.kind),
-                          SharedArray<int64_t>(rows.span().subspan(row, record.features), rows.storage())});
+                          archive.array<int64_t>(rows_of(layers.size()))});
         letter += record.name_bytes;
-        row += record.features;
     }
     return layers;
 }
@@ -227,14 +224,11 @@ std::shared_ptr<PreparedScene> open_if_made_from(const Digest& fingerprint, cons
 }  // namespace
 
 void save_scene(const PreparedScene& scene, const std::string& path, unsigned threads, Progress progress) {
-    const LayerArrays layers(scene.layers);
     ArchiveWriter archive;
     archive.add_value("fingerprint", scene.fingerprint.digest(threads));
     archive.add_value("scene", record_of(scene));
     archive.add("relief ramp", Span<const uint8_t>(scene.relief.ramp));
-    archive.add("layers", Span<const LayerRecord>(layers.records));
-    archive.add("names", Span<const char>(layers.names.data(), layers.names.size()));
-    archive.add("rows", Span<const int64_t>(layers.rows));
+    save_layers(scene.layers, archive);
     archive.add("tiles", Span<const TerrainTile>(scene.tiles.tiles));
     archive.add("heights", scene.terrain.heights().span());
     archive.add("illumination", scene.illumination.span());

@@ -3,7 +3,8 @@
 //     scene, relief ramp      the terrain's place and look        passes/0/technique   who reads the rest
 //     heights, illumination,  as the renderer has them            passes/0/...         of that technique
 //     tiles                                                       passes/1/...
-//     layers, names, rows     what ids and picks are told as      fingerprint          of the scene
+//     layers, names,          what ids and picks are told as      fingerprint          of the scene
+//     layers/0/rows ...
 //
 // Arrays are used where they lie in the mapped file; what is small is copied. All of it is checked before
 // anything is drawn.

@@ -114,11 +114,11 @@ void Renderer::open(const std::string& path) {
 }
 
 std::vector<PreparedLayer> Renderer::layers() const {
-    return state_->require_scene("name layers of")->layers;
+    return state_->require_scene("describe")->layers;
 }
 
 Bounds Renderer::bounds() const {
-    return state_->require_scene("measure")->terrain.bounds();
+    return state_->require_scene("describe")->terrain.bounds();
 }
 
 UpdateReport Renderer::update(const Camera& camera) {
