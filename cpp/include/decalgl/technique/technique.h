@@ -3,9 +3,9 @@
 //     layers ─▶ preprocess ─▶ Prepared ─▶ upload ─▶ update(view) ─▶ draw, draw_ids
 //               any thread     plain        GL thread from here on
 //               no GL          arrays
-//
-//              open ────▶
-//              a saved file
+//                              save │ ▲ open
+//                                   ▼ │
+//                                  a file
 //
 // Threads: `preprocess`, `open` and all of `Prepared` may run on any thread and touch no GL; Prepared is never
 // changed once made, so several renderers may share it. Everything else is called on the thread that holds
