@@ -45,7 +45,11 @@ std::string sentence(std::string text) {
 
 void raise(const char* name, const char* message) {
     const py::object type = py::module_::import("decalgl.errors").attr(name);
-    PyErr_SetString(type.ptr(), sentence(message).c_str());
+    // A message may name a file, and the system's names are not always text.
+    const std::string text = sentence(message);
+    const auto decoded = py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
+    PyErr_SetObject(type.ptr(), decoded.ptr());
 }
 
 }  // namespace

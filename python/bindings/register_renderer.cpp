@@ -5,6 +5,7 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/frame/renderer.h"
+#include "frame/prepared_file.h"
 #include "register.h"
 
 namespace py = pybind11;
@@ -37,7 +38,8 @@ py::array_t<T> view_of(const std::vector<T>& values, std::vector<py::ssize_t> sh
 
 // Progress is told with the interpreter held; an exception of the callback stops the work and comes back as
 // it was.
-void preprocess(Renderer& renderer, const Scene& scene, const py::object& progress) {
+void preprocess(Renderer& renderer, const Scene& scene, const py::object& progress,
+                const std::string& cache) {
     ProgressFn callback;
     if (!progress.is_none()) {
         callback = [&progress](std::string_view stage, double fraction) {
@@ -47,7 +49,46 @@ void preprocess(Renderer& renderer, const Scene& scene, const py::object& progre
         };
     }
     const py::gil_scoped_release others_may_run;
-    renderer.preprocess(scene, callback);
+    renderer.preprocess(scene, callback, cache);
+}
+
+// Names come from files, where they may be no text.
+py::str text_of(const std::string& text) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace"));
+}
+
+// (name, kind, rows) of each, rows without copying them.
+py::list list_of(const std::vector<PreparedLayer>& layers) {
+    py::list list;
+    for (const PreparedLayer& layer : layers) {
+        auto* kept = new std::shared_ptr<const void>(layer.rows.storage());
+        const py::capsule owner(kept,
+                                [](void* held) { delete static_cast<std::shared_ptr<const void>*>(held); });
+        py::array_t<int64_t> rows(static_cast<py::ssize_t>(layer.rows.size()), layer.rows.data(), owner);
+        rows.attr("flags").attr("writeable") = false;
+        list.append(py::make_tuple(text_of(layer.name),
+                                   layer.kind == FeatureKind::lines ? "lines" : "polygons", rows));
+    }
+    return list;
+}
+
+std::array<double, 4> corners_of(const Bounds& bounds) {
+    return {bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y};
+}
+
+py::dict description_of(const SavedScene& saved) {
+    py::dict sections;
+    for (const auto& [name, bytes] : saved.sections)
+        sections[text_of(name)] = bytes;
+    py::dict result;
+    result["format"] = saved.format;
+    result["bytes"] = saved.bytes;
+    result["shape"] = py::make_tuple(saved.rows, saved.columns);
+    result["bounds"] = py::tuple(py::cast(corners_of(saved.bounds)));
+    result["layers"] = list_of(saved.layers);
+    result["sections"] = sections;
+    return result;
 }
 
 py::dict stats_of(const Frame& frame) {
@@ -150,7 +191,12 @@ void register_renderer(py::module_& module) {
                 renderer.set_picture(width, height, antialias_named(antialias));
             },
             py::arg("width"), py::arg("height"), py::arg("antialias"))
-        .def("preprocess", &preprocess, py::arg("scene"), py::arg("progress"))
+        .def("preprocess", &preprocess, py::arg("scene"), py::arg("progress"), py::arg("cache") = "")
+        .def("save", &Renderer::save, py::arg("path"), py::call_guard<py::gil_scoped_release>())
+        .def("open", &Renderer::open, py::arg("path"), py::call_guard<py::gil_scoped_release>())
+        .def("layers", [](const Renderer& renderer) { return list_of(renderer.layers()); })
+        .def("bounds",
+             [](const Renderer& renderer) { return py::tuple(py::cast(corners_of(renderer.bounds()))); })
         .def(
             "update",
             [](Renderer& renderer, const Camera& camera) {
@@ -170,6 +216,11 @@ void register_renderer(py::module_& module) {
             },
             py::arg("sky_low"), py::arg("sky_high"))
         .def("time_floor", &Renderer::time_floor);
+
+    module.def(
+        "describe_saved_scene",
+        [](const std::string& path) { return description_of(describe_saved_scene(path)); }, py::arg("path"));
+    module.def("is_saved_scene", &is_saved_scene, py::arg("path"));
 }
 
 }  // namespace decalgl::bindings

@@ -27,7 +27,7 @@ from .errors import (
     UnsupportedError,
 )
 from .features import FeatureTable
-from .frame import Frame, Picked, Stats
+from .frame import Frame, Picked, PreparedLayer, Stats
 from .renderer import Renderer
 from .scene import Layer, Relief, Scene
 from .scene_file import load_scene
@@ -50,6 +50,7 @@ __all__ = [
     "Layer",
     "MemoryLimitError",
     "Picked",
+    "PreparedLayer",
     "Relief",
     "Renderer",
     "Scene",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 from rich.text import Text
 
+from . import _core
 from ._paths import gdal_name
 from ._sources import guarded_name
 from .errors import FileError
@@ -18,16 +20,22 @@ if TYPE_CHECKING:
 
 
 def describe(file: Path) -> list[Table]:
-    """Tables about a scene file, a raster or a vector file; data itself is not read. Raises FileError."""
+    """Tables about a scene file, a saved scene, a raster or a vector file; data itself is not read.
+
+    Raises FileError.
+    """
     if not file.exists():
         raise FileError(f"There is no file '{file}'. Check the path.")
     if file.suffix.lower() == ".toml":
         return _describe_scene(file)
+    if file.is_file() and _core.is_saved_scene(os.fsencode(file)):
+        return _describe_saved_scene(file)
     name = data_path(str(file), Path())
     found = _describe_raster(name) or _describe_vector(name)
     if not found:
         raise FileError(
-            f"'{file}' is neither a raster nor a vector file that GDAL reads, nor a scene file (.toml)."
+            f"'{file}' is neither a raster nor a vector file that GDAL reads, nor a scene file (.toml) or a"
+            " saved scene."
         )
     return found
 
@@ -143,4 +151,18 @@ def _describe_scene(file: Path) -> list[Table]:
         _row(table, "view", f"{name}: {view.kind}")
     picture = scene.picture
     _row(table, "picture", f"{picture.size[0]} × {picture.size[1]}, antialias {picture.antialias}")
+    return [table]
+
+
+def _describe_saved_scene(file: Path) -> list[Table]:
+    found = _core.describe_saved_scene(os.fsencode(file))
+    table = _table(f"{file.name}: saved scene, format {found['format']}")
+    rows, columns = found["shape"]
+    _row(table, "samples", f"{columns} columns × {rows} rows")
+    _row(table, "bounds", _bounds(found["bounds"]))
+    for name, kind, layer_rows in found["layers"]:
+        _row(table, kind, f"{name}: {len(layer_rows):,} features")
+    _row(table, "size", f"{found['bytes']:,} bytes")
+    for name, count in found["sections"].items():
+        _row(table, f"section {name}", f"{count:,} bytes")
     return [table]

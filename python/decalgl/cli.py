@@ -84,6 +84,10 @@ def render(
     ] = None,
     memory_limit: Annotated[Text, typer.Option(help="Such as 800MB or 2GB.")] = None,
     backend: Annotated[Text, typer.Option(help="auto, egl or osmesa.")] = None,
+    cache: Annotated[
+        Path | None,
+        typer.Option(help="A file that keeps the prepared scene, so that the next picture of it is quick."),
+    ] = None,
     stats: Annotated[bool, typer.Option("--stats", help="Print what the picture cost.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="No progress bars.")] = False,
 ) -> None:
@@ -101,6 +105,7 @@ def render(
             terrain_error=terrain_error,
             memory_limit=None if memory_limit is None else parse_bytes(memory_limit),
             backend=backend,
+            cache=cache,
         ),
     )
     with _drawing.ProgressBars(messages, hidden=quiet) as bars:
@@ -112,7 +117,9 @@ def render(
 
 
 @app.command()
-def info(file: Annotated[Path, typer.Argument(help="A raster, a vector file or a scene file.")]) -> None:
+def info(
+    file: Annotated[Path, typer.Argument(help="A raster, a vector file, a scene file or a cache.")],
+) -> None:
     """Say what a file holds, without reading all of it."""
     console = Console(highlight=False)
     for table in _describe.describe(file):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from . import _core
+    from .features import Kind
     from .scene import Layer
 
 
@@ -23,11 +24,27 @@ KEEP_ALPHA = ("PNG", "WEBP", "TIFF")
 LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 
 
+@dataclass(frozen=True, eq=False)
+class PreparedLayer:
+    """What a saved scene knows of one of its layers.
+
+    rows: int64 (features), each feature's row in the data that the layer was made of.
+    """
+
+    name: str
+    index: int
+    kind: Kind
+    rows: NDArray[np.int64] = field(repr=False)
+
+
 @dataclass(frozen=True)
 class Picked:
-    """A feature under a pixel: its layer, and its row in the data that the layer was made of."""
+    """A feature under a pixel: its layer, and its row in the data that the layer was made of.
 
-    layer: Layer
+    layer: the scene's, or a `PreparedLayer` where the renderer opened a saved scene.
+    """
+
+    layer: Layer | PreparedLayer
     row: int
 
     def __str__(self) -> str:
@@ -40,7 +57,8 @@ class Stats:
 
     passes: [{"name", "ms"}] of the passes that ran, in order; each waits for the driver.
     stages: milliseconds of preprocess, update, render (without reading back) and readback.
-    preprocess: milliseconds of its parts: the terrain and each technique.
+    preprocess: milliseconds of its parts: the terrain and each technique; "open" in their place where a saved
+        scene was opened, "fingerprint" and "save" too where there is a cache.
     bytes: held by each technique, the terrain and the frame, prepared data and GL objects together.
     objects: the same, object by object.
     counts: triangles, features, segments, pieces, prepared_bytes, and quantum_m, how far a vertex may have
@@ -76,7 +94,7 @@ class Frame:
     thread. Reading raises MemoryLimitError where an array does not fit.
     """
 
-    def __init__(self, core: _core.Frame, layers: tuple[Layer, ...]) -> None:
+    def __init__(self, core: _core.Frame, layers: tuple[Layer | PreparedLayer, ...]) -> None:
         self._core = core
         self._layers = layers
         self._read: set[str] = set()

@@ -1,12 +1,16 @@
-"""The renderer: preprocess a scene, update to a camera, render a frame.
+"""The renderer: preprocess a scene or open a saved one, update to a camera, render a frame.
 
 scene ──▶ preprocess ──▶ update(camera) ──▶ render ──▶ Frame
           all cores, no GL   GL from here on
+          save │ ▲ open
+               ▼ │
+              a file
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import os
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -15,13 +19,16 @@ from ._colors import colormap, parse_color
 from ._raster import check_memory
 from .camera import checked_size
 from .errors import CancelledError, InputError, UnsupportedError, warn
-from .frame import Frame
+from .frame import Frame, PreparedLayer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from .camera import Camera
     from .scene import Layer, Scene
+
+    AnyLayer: TypeAlias = Layer | PreparedLayer
+    PathLike = str | os.PathLike[str]
 
     Rgba = tuple[float, float, float, float]
     Progress = Callable[[str, float], bool | None]
@@ -49,7 +56,7 @@ class Renderer:
     threads: for preprocessing; None: all cores.
     tile: larger pictures are drawn in squares of this many pixels; None: chosen. The picture is the same.
 
-    Call everything but `preprocess` from one thread. A call that fails leaves the renderer usable.
+    Call everything but `preprocess`, `save` and `open` from one thread. A call that fails leaves the renderer usable.
     Raises InputError for arguments out of range, UnsupportedError for what this version does not draw.
     """
 
@@ -86,8 +93,9 @@ class Renderer:
         )
         self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
-        self._prepared_layers: tuple[Layer, ...] = ()
-        self._updated_layers: tuple[Layer, ...] = ()
+        self._cache: bytes = b""
+        self._prepared_layers: tuple[AnyLayer, ...] = ()
+        self._updated_layers: tuple[AnyLayer, ...] = ()
 
     def has_options(self, given: Mapping[str, Any]) -> bool:
         """Whether this renderer is what `given`, arguments other than size and antialias, asks for."""
@@ -100,26 +108,66 @@ class Renderer:
         self.antialias = antialias
         self.size = (width, height)
 
-    def preprocess(self, scene: Scene, progress: Progress | None = None) -> None:
+    def preprocess(
+        self, scene: Scene, progress: Progress | None = None, cache: PathLike | None = None
+    ) -> None:
         """Builds the index of a scene on all cores; does nothing where the scene is as it was last time.
 
         progress: called with the stage's name and the fraction done, from the calling thread. Returning False
             stops the work with CancelledError; an exception of its own stops it too and comes back.
+        cache: a file that is opened, as by `open`, where it was saved from exactly this scene. Where it was
+            not, is damaged or is not there, the scene is prepared and saved to it.
 
-        Raises MemoryLimitError where the index does not fit. What was prepared before then stays.
+        Raises MemoryLimitError where the index does not fit, FileError where the cache cannot be written or is
+        another kind of file. What was prepared before then stays.
         """
         state = (scene.terrain, scene.exaggeration, scene.relief, scene.layers)
-        if self._prepared == state:
+        cache_name = b"" if cache is None else _file_name(cache)
+        if self._prepared == state and cache_name in (b"", self._cache):
             return
         stop = _ExceptionKeeper(progress) if progress is not None else None
         try:
-            self._core.preprocess(_core_scene(scene), stop)
+            self._core.preprocess(_core_scene(scene), stop, cache_name)
         except CancelledError:
             if stop is not None and stop.error is not None:
                 raise stop.error from None
             raise
         self._prepared = state
+        self._cache = cache_name
         self._prepared_layers = scene.layers
+
+    def save(self, path: PathLike) -> None:
+        """Writes what is prepared to a file that `open` takes; a file that is there is replaced as a whole.
+
+        Raises InputError where nothing is prepared, FileError where it cannot be written.
+        """
+        self._core.save(_file_name(path))
+
+    def open(self, path: PathLike) -> None:
+        """Takes what was saved in place of `preprocess`; the scene and its data are not needed.
+
+        Pictures, ids and picks are the same as those of the renderer that saved the file. The file is mapped
+        into memory and checked: while it is in use, replace it with `save`, but do not write into it.
+
+        Raises FileError that says what is wrong with the file and what to do.
+        """
+        self._core.open(_file_name(path))
+        self._prepared = ()
+        self._cache = b""
+        self._prepared_layers = tuple(
+            PreparedLayer(name, index, kind, rows)
+            for index, (name, kind, rows) in enumerate(self._core.layers())
+        )
+
+    @property
+    def layers(self) -> tuple[AnyLayer, ...]:
+        """The layers of what is prepared, bottom to top: the scene's, or names and rows after `open`."""
+        return self._prepared_layers
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """(min x, min y, max x, max y) of the prepared terrain. Raises InputError where there is none."""
+        return self._core.bounds()
 
     def update(self, camera: Camera) -> dict[str, int]:
         """Makes ready to draw from a camera.
@@ -194,6 +242,17 @@ def _warn_of_long_walks(report: dict[str, int], visits: int) -> None:
             f" {report['shader_steps']:,} steps: where that many features lie under one pixel, the lowest may be"
             " missing. Look closer, leave features out, use antialias='none', or draw on a GPU."
         )
+
+
+def _file_name(path: Any) -> bytes:
+    """A path as the system takes it. Raises InputError for what is none."""
+    try:
+        name = os.fsencode(path)
+    except (TypeError, UnicodeEncodeError) as error:
+        raise InputError(f"A path must be a str or a Path, but it is {path!r}.") from error
+    if not name:
+        raise InputError("The path is empty. Name a file.")
+    return name
 
 
 def _core_scene(scene: Scene) -> _core.Scene:

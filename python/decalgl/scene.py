@@ -15,6 +15,7 @@ from .features import LARGEST_COORDINATE, FeatureTable, Kind, read_features
 from .terrain import Terrain
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
@@ -99,6 +100,11 @@ class Layer:
     def kind(self) -> Kind:
         """What its features are: "polygons" or "lines"."""
         return self.features.kind
+
+    @property
+    def rows(self) -> NDArray[np.int64]:
+        """int64 (features), each feature's row in the data that the layer was made of."""
+        return self.features.rows
 
 
 @dataclass(frozen=True)
@@ -265,11 +271,13 @@ class Scene:
         antialias: str = "coverage",
         background: Any = "sky",
         progress: Callable[[str, float], bool | None] | None = None,
+        cache: str | os.PathLike[str] | None = None,
         **renderer: Any,
     ) -> Frame:
         """A picture of the scene: `Renderer`'s three stages in one call.
 
         The renderer is kept, so a second picture only draws. `renderer`: other arguments of `Renderer`.
+        progress, cache: as in `Renderer.preprocess`.
         Raises what `Renderer` raises; the scene stays as it was, and so does an earlier frame.
         """
         from .renderer import Renderer, drawn_background
@@ -278,7 +286,7 @@ class Scene:
         if self._renderer is None or not self._renderer.has_options(renderer):
             self._renderer = Renderer(size=size, antialias=antialias, **renderer)
         self._renderer.set_picture(size, antialias)
-        self._renderer.preprocess(self, progress=progress)
+        self._renderer.preprocess(self, progress=progress, cache=cache)
         self._renderer.update(camera)
         return self._renderer.render(background=background)
 

@@ -93,6 +93,26 @@ def test_render_draws_a_scene_file(scene: Path, capfd: pytest.CaptureFixture[str
     assert 0.12 < red.mean() < 0.2  # (40 / 100)^2 of the ground
 
 
+def test_render_keeps_a_cache(scene: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    first, second, cache = (scene.parent / name for name in ("first.png", "second.png", "map.decal"))
+    common = ("render", scene, "--size", "32x32", "--cache", cache, "-o")
+    assert run(capfd, *common, first)[0] == 0
+    saved = cache.read_bytes()
+    assert run(capfd, *common, second)[0] == 0
+    assert (cache.read_bytes(), second.read_bytes()) == (saved, first.read_bytes())
+    code, out, _ = run(capfd, "info", cache)
+    assert code == 0
+    for part in ("saved scene", "2 columns × 2 rows", "-50, -50, 50, 50", "polygons", "1 features"):
+        assert part in out
+    code, _, err = run(capfd, *common[:-2], scene, "-o", first)
+    assert code == 2
+    assert "name another file" in " ".join(err.split())
+    cache.write_bytes(saved[:100])
+    code, _, err = run(capfd, "info", cache)
+    assert code == 2
+    assert "is cut short" in " ".join(err.split())
+
+
 def test_render_takes_a_view(scene: Path, capfd: pytest.CaptureFixture[str]) -> None:
     near, plan = scene.parent / "near.png", scene.parent / "plan.png"
     assert run(capfd, "render", scene, "-o", near, "--view", "near", "--size", "32x32")[0] == 0

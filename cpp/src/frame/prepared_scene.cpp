@@ -15,28 +15,6 @@ constexpr double farthest = 1e10;
 constexpr float highest = 1e30F;
 constexpr size_t longest_ramp = 4096;
 
-void validate(const Heightfield& terrain) {
-    const Bounds bounds = terrain.bounds();
-    for (const double value : {bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y}) {
-        if (!(std::abs(value) <= farthest))
-            throw Error(ErrorKind::input,
-                        "terrain: it reaches farther than 1e10 m from the origin; move it closer");
-    }
-    const auto is_too_high = [](float height) { return std::abs(height) > highest; };
-    if (std::any_of(terrain.heights().begin(), terrain.heights().end(), is_too_high))
-        throw Error(ErrorKind::input, "terrain: a height is beyond 1e30 m; mark missing samples with NaN");
-}
-
-void validate(const Relief& relief) {
-    const double values[] = {relief.lowest,   relief.highest,  relief.azimuth,
-                             relief.altitude, relief.strength, relief.on_layers};
-    if (!std::all_of(std::begin(values), std::end(values), [](double value) { return std::isfinite(value); }))
-        throw Error(ErrorKind::input, "relief: all its numbers must be finite");
-    if (relief.ramp.size() % 3 != 0 || relief.ramp.size() > 3 * longest_ramp)
-        throw Error(ErrorKind::input, "relief: the ramp must be red, green and blue of at most " +
-                                          std::to_string(longest_ramp) + " colours");
-}
-
 // Vertices and widths are counted in billionths of the terrain's extent; these many fit the integers.
 constexpr double farthest_in_extents = 1e8;
 constexpr double widest_in_extents = 1e4;
@@ -63,8 +41,7 @@ void validate_reach(const Layer& layer, const Bounds& bounds) {
 void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, PreparedScene& prepared) {
     const Stopwatch watch;
     progress.report(0.0);
-    prepared.terrain =
-        scene.exaggeration == 1.0 ? scene.terrain : scene.terrain.exaggerated(scene.exaggeration);
+    prepared.terrain = drawn_terrain(scene);
     validate(prepared.terrain);
     prepared.positions = PositionGrid::around(prepared.terrain.bounds());
     prepared.relief = scene.relief;
@@ -101,16 +78,43 @@ void prepare_layers(const Scene& scene, unsigned threads, const MemoryAccount& m
 
 }  // namespace
 
-std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
-                                                   const MemoryAccount& memory, const ProgressFn& progress) {
+Heightfield drawn_terrain(const Scene& scene) {
+    return scene.exaggeration == 1.0 ? scene.terrain : scene.terrain.exaggerated(scene.exaggeration);
+}
+
+void validate(const Heightfield& terrain) {
+    const Bounds bounds = terrain.bounds();
+    for (const double value : {bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y}) {
+        if (!(std::abs(value) <= farthest))
+            throw Error(ErrorKind::input,
+                        "terrain: it reaches farther than 1e10 m from the origin; move it closer");
+    }
+    if (terrain.lowest() < -highest || terrain.highest() > highest)
+        throw Error(ErrorKind::input, "terrain: a height is beyond 1e30 m; mark missing samples with NaN");
+}
+
+void validate(const Relief& relief) {
+    const double values[] = {relief.lowest,   relief.highest,  relief.azimuth,
+                             relief.altitude, relief.strength, relief.on_layers};
+    if (!std::all_of(std::begin(values), std::end(values), [](double value) { return std::isfinite(value); }))
+        throw Error(ErrorKind::input, "relief: all its numbers must be finite");
+    if (relief.ramp.size() % 3 != 0 || relief.ramp.size() > 3 * longest_ramp)
+        throw Error(ErrorKind::input, "relief: the ramp must be red, green and blue of at most " +
+                                          std::to_string(longest_ramp) + " colours");
+}
+
+std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
+                                             const MemoryAccount& memory, const ProgressFn& progress) {
     const Stopwatch watch;
     auto prepared = std::make_shared<PreparedScene>();
     validate(scene.relief);
     for (const Layer& layer : scene.layers) {
         validate(layer);
-        prepared->features.push_back(layer.features);
+        const Features& features = layer.features;
+        prepared->layers.push_back({layer.name, features.kind, {features.rows, features.storage}});
     }
     prepare_terrain(scene, threads, Progress(progress, "terrain"), *prepared);
+    prepared->fingerprint = SceneFingerprint(prepared->terrain, scene.relief, scene.layers, threads);
     prepare_layers(scene, threads, memory, Progress(progress, "layers"), *prepared);
     prepared->milliseconds = watch.milliseconds();
     return prepared;

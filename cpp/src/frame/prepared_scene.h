@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "decalgl/core/timing.h"
+#include "decalgl/frame/prepared_layer.h"
 #include "decalgl/frame/scene.h"
 #include "decalgl/technique/technique.h"
 #include "decalgl/terrain/tiles.h"
+#include "frame/fingerprint.h"
 
 namespace decalgl {
 
@@ -22,20 +24,28 @@ struct PreparedScene {
     Heightfield terrain;  // exaggerated
     TerrainTiles tiles;
     Relief relief;
-    std::vector<uint8_t> illumination;
+    SharedArray<uint8_t> illumination;
     PositionGrid positions;
     std::vector<PreparedPass> passes;  // bottom to top
-    std::vector<Features> features;    // of each layer, for their rows
+    std::vector<PreparedLayer> layers;
+    SceneFingerprint fingerprint;
     TimingLog timings{true};
     double milliseconds = 0.0;
 
     int64_t row_of(FeatureReference reference) const {
-        return features[reference.layer].rows[reference.feature];
+        return layers[reference.layer].rows[reference.feature];
     }
 };
 
+// The terrain of a scene as it is drawn: exaggerated.
+Heightfield drawn_terrain(const Scene& scene);
+
+// Throw Error(input) for what cannot be drawn.
+void validate(const Heightfield& terrain);
+void validate(const Relief& relief);
+
 // Validates and prepares. Throws Error(input), Error(memory), Error(cancelled).
-std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
-                                                   const MemoryAccount& memory, const ProgressFn& progress);
+std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
+                                             const MemoryAccount& memory, const ProgressFn& progress);
 
 }  // namespace decalgl

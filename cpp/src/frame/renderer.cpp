@@ -6,6 +6,7 @@
 
 #include "decalgl/core/error.h"
 #include "frame/pipeline.h"
+#include "frame/prepared_file.h"
 #include "frame/stats.h"
 
 namespace decalgl {
@@ -40,6 +41,19 @@ struct RendererState {
     std::shared_ptr<const PreparedScene> latest_scene() {
         const std::lock_guard<std::mutex> lock(scene_mutex);
         return scene;
+    }
+
+    std::shared_ptr<const PreparedScene> require_scene(const char* to_do) {
+        auto latest = latest_scene();
+        if (!latest)
+            throw Error(ErrorKind::input,
+                        std::string("nothing to ") + to_do + " yet; call preprocess(scene) first");
+        return latest;
+    }
+
+    void set_scene(std::shared_ptr<const PreparedScene> prepared) {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
+        scene = std::move(prepared);
     }
 
     // Makes the pipeline draw a request, whatever it drew last.
@@ -85,17 +99,31 @@ void Renderer::set_picture(int width, int height, Antialias antialias) {
     state_->options = options;
 }
 
-void Renderer::preprocess(const Scene& scene, const ProgressFn& progress) {
-    auto prepared = prepare_scene(scene, state_->options.threads, state_->memory, progress);
-    const std::lock_guard<std::mutex> lock(state_->scene_mutex);
-    state_->scene = std::move(prepared);
+void Renderer::preprocess(const Scene& scene, const ProgressFn& progress, const std::string& cache) {
+    const unsigned threads = state_->options.threads;
+    state_->set_scene(cache.empty() ? prepare_scene(scene, threads, state_->memory, progress)
+                                    : prepare_cached(scene, cache, threads, state_->memory, progress));
+}
+
+void Renderer::save(const std::string& path) const {
+    save_scene(*state_->require_scene("save"), path, state_->options.threads, {});
+}
+
+void Renderer::open(const std::string& path) {
+    state_->set_scene(open_scene(path, state_->options.threads, state_->memory));
+}
+
+std::vector<PreparedLayer> Renderer::layers() const {
+    return state_->require_scene("describe")->layers;
+}
+
+Bounds Renderer::bounds() const {
+    return state_->require_scene("describe")->terrain.bounds();
 }
 
 UpdateReport Renderer::update(const Camera& camera) {
     RendererState& state = *state_;
-    const std::shared_ptr<const PreparedScene> scene = state.latest_scene();
-    if (!scene)
-        throw Error(ErrorKind::input, "nothing to draw yet; call preprocess(scene) first");
+    const std::shared_ptr<const PreparedScene> scene = state.require_scene("draw");
     const Stopwatch watch;
     if (!state.pipeline) {
         state.pipeline = std::make_unique<Pipeline>(state.options, state.memory);

@@ -49,7 +49,7 @@ TerrainMesh::TerrainMesh(const PreparedScene& scene, const MemoryAccount& memory
                     "the terrain has " + std::to_string(rows) + " x " + std::to_string(columns) +
                         " samples, but this driver holds at most " + std::to_string(limit) +
                         " a side; open a part of it, or resample it");
-    std::vector<float> heights(scene.terrain.heights());
+    std::vector<float> heights(scene.terrain.heights().begin(), scene.terrain.heights().end());
     lowest_ = 0.0F;
     for (float& height : heights) {
         if (std::isnan(height))

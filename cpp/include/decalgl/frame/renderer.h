@@ -1,16 +1,18 @@
-// The renderer: preprocess a scene, update to a camera, render a frame.
+// The renderer: preprocess a scene or open a saved one, update to a camera, render a frame.
 //
-// Threads: a renderer belongs to the thread that calls `update` first; `preprocess` alone may run on any
-// thread, and touches no GL. A failed call leaves the renderer as it was.
+// Threads: a renderer belongs to the thread that calls `update` first; `preprocess`, `save` and `open` may run
+// on any thread, and touch no GL. A failed call leaves the renderer as it was.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "decalgl/core/progress.h"
 #include "decalgl/frame/frame.h"
 #include "decalgl/frame/picture_request.h"
+#include "decalgl/frame/prepared_layer.h"
 #include "decalgl/frame/scene.h"
 
 namespace decalgl {
@@ -36,7 +38,22 @@ public:
     // Takes effect at the next update.
     void set_picture(int width, int height, Antialias antialias);
 
-    void preprocess(const Scene& scene, const ProgressFn& progress = {});
+    // `cache`: a file of save() or of an earlier call, opened where it was saved from this very scene; else
+    // the scene is prepared and saved there. Empty: none. Throws Error(file) too.
+    void preprocess(const Scene& scene, const ProgressFn& progress = {}, const std::string& cache = {});
+
+    // Writes what is prepared. The file is there as a whole or not at all. Throws Error(input) where nothing is
+    // prepared, Error(file).
+    void save(const std::string& path) const;
+    // In place of preprocess: maps a file of save(), and draws the same bytes as the renderer that saved it.
+    // The file must not be overwritten in place while it is in use; save() puts a new one in its place.
+    // Throws Error(file) that says what is wrong with the file and what to do.
+    void open(const std::string& path);
+
+    // Of what is prepared. Throw Error(input) where nothing is.
+    std::vector<PreparedLayer> layers() const;
+    Bounds bounds() const;
+
     // Throws Error(graphics) where no GL can be had, naming what was tried and what to install.
     UpdateReport update(const Camera& camera);
     Frame render(const Background& background = {});

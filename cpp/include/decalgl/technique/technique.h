@@ -3,8 +3,11 @@
 //     layers ─▶ preprocess ─▶ Prepared ─▶ upload ─▶ update(view) ─▶ draw, draw_ids
 //               any thread     plain        GL thread from here on
 //               no GL          arrays
+//                              save │ ▲ open
+//                                   ▼ │
+//                                  a file
 //
-// Threads: `preprocess` and `Prepared::query` may run on any thread and touch no GL; Prepared is never
+// Threads: `preprocess`, `open` and all of `Prepared` may run on any thread and touch no GL; Prepared is never
 // changed once made, so several renderers may share it. Everything else is called on the thread that holds
 // the context.
 #pragma once
@@ -26,6 +29,9 @@ class Texture2D;
 }  // namespace decalgl::gl
 
 namespace decalgl {
+
+class ArchiveReader;
+class ArchiveWriter;
 
 // A feature as the user knows it: the layer's place in the scene and the feature's place in the layer.
 struct FeatureReference {
@@ -59,6 +65,9 @@ public:
     virtual FeatureReference feature(uint32_t id) const = 0;
     // Every feature at a map position in the scene's coordinates, topmost first.
     virtual std::vector<FeatureReference> query(double x, double y) const = 0;
+    // Adds what Technique::open needs, in sections whose names begin with `prefix`. They may point into this
+    // object, which outlives the writing.
+    virtual void save(ArchiveWriter& archive, const std::string& prefix) const = 0;
 };
 
 enum class Antialias { none, coverage };
@@ -91,6 +100,11 @@ public:
     virtual std::string name() const = 0;
     virtual std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input,
                                                        Progress& progress) const = 0;
+    // What Prepared::save wrote. Arrays stay in the mapped file; `memory` is charged for those that do not.
+    // Throws Error(file) for contents that no save wrote: afterwards, nothing in them can lead query, feature
+    // or a shader astray.
+    virtual std::unique_ptr<const Prepared> open(const ArchiveReader& archive, const std::string& prefix,
+                                                 const MemoryAccount& memory) const = 0;
     virtual void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) = 0;
     virtual UpdateReport update(const View& view) = 0;
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture.

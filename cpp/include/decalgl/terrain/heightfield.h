@@ -8,10 +8,9 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
-#include <vector>
 
 #include "decalgl/core/position_grid.h"
+#include "decalgl/core/shared_array.h"
 
 namespace decalgl {
 
@@ -21,7 +20,7 @@ public:
 
     // heights[row * columns + column] in metres, row 0 the northernmost, NaN where there is none. Sample (0,
     // 0) lies at (x0, y0); columns go east by dx, rows south by dy, both positive. Throws Error(input).
-    Heightfield(std::vector<float> heights, int32_t rows, int32_t columns, double x0, double y0, double dx,
+    Heightfield(SharedArray<float> heights, int32_t rows, int32_t columns, double x0, double y0, double dx,
                 double dy);
 
     // Level ground at one height.
@@ -36,10 +35,10 @@ public:
     double y0() const { return y0_; }
     double dx() const { return dx_; }
     double dy() const { return dy_; }
-    const std::vector<float>& heights() const { return *heights_; }
+    const SharedArray<float>& heights() const { return heights_; }
     float height(int32_t row, int32_t column) const {
-        return (*heights_)[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
-                           static_cast<size_t>(column)];
+        return heights_[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
+                        static_cast<size_t>(column)];
     }
     Bounds bounds() const;
     // Of the samples there are; above each other where there is none.
@@ -47,7 +46,9 @@ public:
     float highest() const { return highest_; }
 
 private:
-    std::shared_ptr<const std::vector<float>> heights_;
+    void measure();
+
+    SharedArray<float> heights_;
     int32_t rows_ = 0;
     int32_t columns_ = 0;
     double x0_ = 0.0;

@@ -21,6 +21,7 @@ struct TerrainTile {
     float highest = 0.0F;
     std::array<float, tile_levels> error{};  // metres; infinite where the level would move the rim of a hole
 };
+static_assert(sizeof(TerrainTile) == 44, "saved as it is");
 
 struct TerrainTiles {
     int32_t columns = 0;

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "decalgl/core/error.h"
+#include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 #include "technique/static_decals/bucket_builder.h"
 #include "technique/static_decals/prepared_decals.h"
@@ -30,6 +31,8 @@ uint64_t segments_of(const Features& features, size_t feature) {
 }
 
 void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
+    std::vector<FeatureReference> slots;
+    std::vector<DecalStyle> styles;
     for (size_t l = input.layers.size(); l-- > 0;) {
         const Layer& layer = input.layers[l];
         const bool lines = layer.features.kind == FeatureKind::lines;
@@ -50,18 +53,19 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
                 decals.narrowest =
                     decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
             }
-            decals.slots.push_back(
-                {input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
-            decals.styles.push_back(style);
-            decals.has_one_color &= style.color == decals.styles.front().color;
+            slots.push_back({input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
+            styles.push_back(style);
+            decals.has_one_color &= style.color == styles.front().color;
             decals.segments += segments_of(layer.features, feature);
             decals.has_translucency |= color[3] != 255;
             (lines ? decals.has_lines : decals.has_polygons) = true;
         }
     }
-    if (decals.slots.size() > SLOT_MASK)
+    if (slots.size() > SLOT_MASK)
         throw Error(ErrorKind::memory, "static: more than " + std::to_string(SLOT_MASK) +
                                            " features in one scene; draw a smaller part of the map at once");
+    decals.slots = std::move(slots);
+    decals.styles = std::move(styles);
 }
 
 std::vector<BucketReferences> make_all_references(const OrderedFeatures& features,
@@ -97,6 +101,12 @@ std::vector<BucketReferences> make_all_references(const OrderedFeatures& feature
     return references;
 }
 
+[[noreturn]] void refuse_size(uint64_t bytes) {
+    throw Error(ErrorKind::memory,
+                "the static index would need " + format_bytes(bytes) +
+                    ", more than one index can address; draw a smaller part of the map at once");
+}
+
 std::vector<CellChunk> make_chunks(const OrderedFeatures& features, const std::vector<BucketReferences>& runs,
                                    std::vector<MemoryCharge>& charges, Progress& progress) {
     const size_t buckets = features.grid->bucket_count();
@@ -108,8 +118,11 @@ std::vector<CellChunk> make_chunks(const OrderedFeatures& features, const std::v
             const size_t index = begin / buckets_per_chunk;
             CellChunk& chunk = chunks[index];
             BucketBuilder builder(features);
-            for (size_t bucket = begin; bucket < end; ++bucket)
+            for (size_t bucket = begin; bucket < end; ++bucket) {
                 builder.build(static_cast<uint32_t>(bucket), runs, chunk);
+                if (chunk.words.size() / 4 > most_texels)
+                    refuse_size(chunk.words.size() * sizeof(uint32_t));
+            }
             charges[index] = MemoryCharge(features.input->memory, "static: working memory",
                                           (chunk.cells.size() + chunk.words.size()) * sizeof(uint32_t));
         },
@@ -122,18 +135,24 @@ struct ChunkPlace {
     uint64_t first_texel;
 };
 
+// The arrays of the index while they are filled.
+struct IndexArrays {
+    LargeArray<uint32_t> bucket_entries;
+    LargeArray<uint32_t> cells;
+    LargeArray<uint32_t> words;
+};
+
 // Copies a chunk to its place, where entries count from the index's beginning.
-void place_chunk(const CellChunk& chunk, const ChunkPlace& place, size_t first_bucket,
-                 PreparedDecals& decals) {
+void place_chunk(const CellChunk& chunk, const ChunkPlace& place, size_t first_bucket, IndexArrays& index) {
     const auto cell_base = static_cast<uint32_t>(place.first_cell << LEVEL_BITS);
     const auto texel_base = static_cast<uint32_t>(place.first_texel << COUNT_BITS);
     for (size_t i = 0; i < chunk.bucket_entries.size(); ++i)
-        decals.bucket_entries[first_bucket + i] = chunk.bucket_entries[i] + cell_base;
+        index.bucket_entries[first_bucket + i] = chunk.bucket_entries[i] + cell_base;
     for (size_t i = 0; i < chunk.cells.size(); ++i)
-        decals.cells[place.first_cell + i] =
+        index.cells[place.first_cell + i] =
             chunk.cells[i] == EMPTY_LIST ? EMPTY_LIST : chunk.cells[i] + texel_base;
     std::copy(chunk.words.begin(), chunk.words.end(),
-              decals.words.begin() + static_cast<std::ptrdiff_t>(4 * place.first_texel));
+              index.words.begin() + static_cast<std::ptrdiff_t>(4 * place.first_texel));
 }
 
 void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& charges,
@@ -148,24 +167,26 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
         decals.longest_list = std::max(decals.longest_list, chunk.longest_list);
     }
     const uint64_t bytes = 16 * end.first_texel + 4 * end.first_cell +
-                           4 * uint64_t{decals.grid.bucket_count()} +
-                           decals.slots.size() * (sizeof(DecalStyle) + sizeof(FeatureReference));
+                           4 * uint64_t{decals.grid.bucket_count()} + decals.styles.size_bytes() +
+                           decals.slots.size_bytes();
     if (end.first_texel > most_texels || end.first_cell > most_cells)
-        throw Error(ErrorKind::memory,
-                    "the static index would need " + format_bytes(bytes) +
-                        ", more than one index can address; draw a smaller part of the map at once");
+        refuse_size(bytes);
     decals.charge.resize(bytes);
-    decals.bucket_entries.resize(decals.grid.bucket_count());
-    decals.cells.resize(end.first_cell);
-    decals.words.resize(4 * end.first_texel);
-    std::fill_n(decals.words.begin(), 4, LIST_END);
+    IndexArrays index;
+    index.bucket_entries.resize(decals.grid.bucket_count());
+    index.cells.resize(end.first_cell);
+    index.words.resize(4 * end.first_texel);
+    std::fill_n(index.words.begin(), 4, LIST_END);
     parallel_for(chunks.size(), 1, input.threads, [&](size_t begin, size_t last) {
         for (size_t i = begin; i < last; ++i) {
-            place_chunk(chunks[i], places[i], i * buckets_per_chunk, decals);
+            place_chunk(chunks[i], places[i], i * buckets_per_chunk, index);
             chunks[i] = CellChunk();
             charges[i] = MemoryCharge();
         }
     });
+    decals.bucket_entries = std::move(index.bucket_entries);
+    decals.cells = std::move(index.cells);
+    decals.words = std::move(index.words);
 }
 
 }  // namespace
@@ -191,7 +212,9 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
 }
 
 PreparedCounts PreparedDecals::counts() const {
-    return {slots.size(), segments, pieces, charge.bytes(), std::ldexp(grid.quantum, largest_scale)};
+    const size_t bytes = bucket_entries.size_bytes() + cells.size_bytes() + words.size_bytes() +
+                         styles.size_bytes() + slots.size_bytes();
+    return {slots.size(), segments, pieces, bytes, std::ldexp(grid.quantum, largest_scale)};
 }
 
 }  // namespace decalgl

@@ -3,9 +3,10 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
-#include "decalgl/core/large_array.h"
+#include "decalgl/core/shared_array.h"
 #include "decalgl/technique/technique.h"
 #include "technique/static_decals/bucket_grid.h"
 
@@ -23,14 +24,15 @@ public:
     PreparedCounts counts() const override;
     FeatureReference feature(uint32_t id) const override { return slots[id]; }
     std::vector<FeatureReference> query(double x, double y) const override;
+    void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
     BucketGrid grid;
     // As cell_lists.h says.
-    std::vector<uint32_t> bucket_entries;
-    LargeArray<uint32_t> cells;
-    LargeArray<uint32_t> words;
-    std::vector<DecalStyle> styles;
-    std::vector<FeatureReference> slots;  // topmost first
+    SharedArray<uint32_t> bucket_entries;
+    SharedArray<uint32_t> cells;
+    SharedArray<uint32_t> words;
+    SharedArray<DecalStyle> styles;
+    SharedArray<FeatureReference> slots;  // topmost first
     uint64_t segments = 0;
     uint64_t pieces = 0;
     uint32_t longest_list = 0;  // words
@@ -41,10 +43,14 @@ public:
     bool has_lines = false;
     bool has_one_color = true;
     bool has_translucency = false;
-    MemoryCharge charge;
+    MemoryCharge charge;  // of the arrays, but for those in a mapped file
 };
 
 // Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).
 std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress);
+
+// What PreparedDecals::save wrote; the arrays stay in the file. Throws Error(file) where they do not fit
+// together.
+std::unique_ptr<PreparedDecals> open_decals(const ArchiveReader& archive, const std::string& prefix);
 
 }  // namespace decalgl

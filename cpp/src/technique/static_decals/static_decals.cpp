@@ -36,15 +36,18 @@ std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& i
     return build_decals(input, progress);
 }
 
+std::unique_ptr<const Prepared> StaticDecals::open(const ArchiveReader& archive, const std::string& prefix,
+                                                   const MemoryAccount&) const {
+    return open_decals(archive, prefix);
+}
+
 void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
-    buckets_ = gl::TextureBuffer::from(memory, "static: buckets", GL_R32UI,
-                                       Span<const uint32_t>(prepared_->bucket_entries));
-    cells_ =
-        gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, Span<const uint32_t>(prepared_->cells));
-    texels_ =
-        gl::TextureBuffer::from(memory, "static: words", GL_RGBA32UI, Span<const uint32_t>(prepared_->words));
-    styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, prepared_->styles);
+    const PreparedDecals& decals = *prepared_;
+    buckets_ = gl::TextureBuffer::from(memory, "static: buckets", GL_R32UI, decals.bucket_entries.span());
+    cells_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, decals.cells.span());
+    texels_ = gl::TextureBuffer::from(memory, "static: words", GL_RGBA32UI, decals.words.span());
+    styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, decals.styles.span());
     no_vertices_ = gl::VertexArray::create();
 }
 
@@ -99,7 +102,7 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     styles_.bind(5);
     set_grid(prepared_->grid, program);
     if (flags.count("ONE_COLOR") != 0) {
-        const std::array<uint8_t, 4> color = prepared_->styles.front().color;
+        const std::array<uint8_t, 4> color = prepared_->styles[0].color;
         program.set("one_color", glm::vec4(color[0], color[1], color[2], color[3]) / 255.0F);
     }
     if (one_width) {

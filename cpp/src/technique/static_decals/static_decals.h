@@ -14,6 +14,8 @@ public:
     std::string name() const override { return "static"; }
     std::unique_ptr<const Prepared> preprocess(const TechniqueInput& input,
                                                Progress& progress) const override;
+    std::unique_ptr<const Prepared> open(const ArchiveReader& archive, const std::string& prefix,
+                                         const MemoryAccount& memory) const override;
     void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
