@@ -268,4 +268,15 @@ double nearest_depth(const std::vector<VisibleTile>& tiles, const Heightfield& t
     return std::max(0.0, static_cast<double>(static_cast<float>(0.999 * nearest)));
 }
 
+double widest_pixel(const std::vector<VisibleTile>& tiles, const Heightfield& terrain, const Camera& camera,
+                    int height) {
+    if (camera.orthographic())
+        return camera.view_height / height;
+    const CameraBasis basis = basis_of(camera);
+    double farthest = 0.0;
+    for (const VisibleTile& visible : tiles)
+        farthest = std::max(farthest, tile_box(*visible.tile, terrain, camera.eye).reach(basis.forward));
+    return 2.0 * half_height_at_unit_distance(camera) * farthest / height;
+}
+
 }  // namespace decalgl

@@ -23,6 +23,10 @@ std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfie
 // A depth, exact in float32, that nothing visible lies before; 0 where the eye is among the tiles.
 double nearest_depth(const std::vector<VisibleTile>& tiles, const Heightfield& terrain, const Camera& camera);
 
+// Metres across the view that a pixel of the farthest visible terrain shows.
+double widest_pixel(const std::vector<VisibleTile>& tiles, const Heightfield& terrain, const Camera& camera,
+                    int height);
+
 // base_depth: of the point that positions are relative to, see view_block.h. Throws Error(input) where that
 // point is too far away to be held in block and sample numbers.
 ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,

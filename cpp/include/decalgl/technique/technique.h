@@ -78,6 +78,7 @@ struct View {
     int height = 0;
     PositionGrid positions;
     Antialias antialias = Antialias::none;
+    double widest_pixel = 0.0;  // metres that the farthest pixel is wide, seen head-on
 };
 
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y

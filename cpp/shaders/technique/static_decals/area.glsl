@@ -8,6 +8,7 @@
 // a shared border, and joints, caps and crossings need no special case. The samples are a scrambled
 // (0, 5, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
 #include "technique/static_decals/point.glsl"
+#include "technique/static_decals/levels.glsl"
 
 const int sample_count = 32;
 const uint all_samples = 0xFFFFFFFFu;
@@ -258,6 +259,9 @@ vec4 composite_cells(LatticePosition centre, mat2 foot) {
 }
 
 vec4 composite_area(LatticePosition centre, mat2 foot) {
+#ifdef LEVELS
+    if (spans_texels(foot)) return mean_of_levels(centre, foot);
+#endif
     float size = max(length(foot[0]), length(foot[1]));
     if (size > most_cells_across * float(1 << cell_at(centre.quantum).bits)) return composite_points(centre, foot);
     return composite_cells(centre, foot);

@@ -28,6 +28,11 @@
 #define COARSEST_LEVEL 3  // of buckets with points, so that 15 bits suffice; a bucket without any has level 0
 #define FINEST_LEVEL 6
 
+// Levels of detail (levels.h): texels of the finest along a bucket's side, and how many a pixel must span to be
+// drawn from them.
+#define LEVEL_TEXELS 16
+#define FEWEST_TEXELS 2
+
 #define COUNT_BITS 6
 #define COUNT_ESCAPE 63u  // that many or more: to the texel whose last word is LIST_END
 #define EMPTY_LIST 0u     // of cells without one; the first texel is LIST_END alone

@@ -5,6 +5,7 @@
 // ONE_COLOR      all features are opaque and of one colour
 // TRANSLUCENT    some feature is not opaque
 // COVERAGE       the samples' mean, else the pixel's centre alone
+// LEVELS         where it is many cells wide, from levels of detail
 // IDS            writes 1 + slot of the topmost feature at the centre instead of a colour
 #include "shared/ray.glsl"
 #include "technique/static_decals/point.glsl"

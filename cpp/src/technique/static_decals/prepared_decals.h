@@ -26,6 +26,9 @@ public:
     std::vector<FeatureReference> query(double x, double y) const override;
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
+    // The words of a cell, to LIST_END or their end.
+    Span<const uint32_t> list(uint32_t cell_entry) const;
+
     BucketGrid grid;
     // As cell_lists.h says.
     SharedArray<uint32_t> bucket_entries;

@@ -58,14 +58,13 @@ bool locate(const PreparedDecals& decals, double x, double y, CellPlace& place) 
     return true;
 }
 
-Span<const uint32_t> list_of(const PreparedDecals& decals, uint32_t entry) {
-    const size_t first = size_t{4} * (entry >> COUNT_BITS);
-    const uint32_t texels = entry & COUNT_ESCAPE;
-    return {decals.words.data() + first,
-            texels < COUNT_ESCAPE ? size_t{4} * texels : decals.words.size() - first};
-}
-
 }  // namespace
+
+Span<const uint32_t> PreparedDecals::list(uint32_t cell_entry) const {
+    const size_t first = size_t{4} * (cell_entry >> COUNT_BITS);
+    const uint32_t texels = cell_entry & COUNT_ESCAPE;
+    return {words.data() + first, texels < COUNT_ESCAPE ? size_t{4} * texels : words.size() - first};
+}
 
 std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
     std::vector<FeatureReference> found;
@@ -82,7 +81,7 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
             found.push_back(slots[slot]);
         covered = false;
     };
-    for (const uint32_t word : list_of(*this, place.entry)) {
+    for (const uint32_t word : list(place.entry)) {
         if ((word & HEADER) != 0) {
             end_group();
             if (word == LIST_END)

@@ -1,10 +1,12 @@
 #include "technique/static_decals/static_decals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "gl/gl.h"
 #include "gl/texture.h"
+#include "technique/static_decals/levels.h"
 
 namespace decalgl {
 
@@ -43,6 +45,7 @@ std::unique_ptr<const Prepared> StaticDecals::open(const ArchiveReader& archive,
 
 void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
+    memory_ = memory;
     const PreparedDecals& decals = *prepared_;
     buckets_ = gl::TextureBuffer::from(memory, "static: buckets", GL_R32UI, decals.bucket_entries.span());
     cells_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, decals.cells.span());
@@ -51,11 +54,29 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const Memory
     no_vertices_ = gl::VertexArray::create();
 }
 
-UpdateReport StaticDecals::update(const View&) {
+// Whether some pixel spans enough texels of the finest level (levels.glsl).
+bool StaticDecals::needs_levels(const View& view) const {
+    const double texel = prepared_->grid.bucket_size / LEVEL_TEXELS;
+    return view.antialias == Antialias::coverage && view.widest_pixel >= FEWEST_TEXELS * texel;
+}
+
+void StaticDecals::make_levels() {
+    const LevelRaster finest = draw_finest_level(*prepared_);
+    const int count = 1 + static_cast<int>(std::log2(std::max(finest.width, finest.height)));
+    levels_ = gl::Texture2D::create(memory_, "static: levels", GL_RGBA8, finest.width, finest.height, count);
+    levels_.update(0, 0, 0, finest.width, finest.height, finest.texels.data());
+    levels_.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
+    glGenerateTextureMipmap(levels_.id());
+}
+
+UpdateReport StaticDecals::update(const View& view) {
+    draws_levels_ = needs_levels(view);
+    if (draws_levels_ && !levels_)
+        make_levels();
     UpdateReport report;
     report.pieces = prepared_->pieces;
     report.bytes = buckets_.buffer().bytes() + cells_.buffer().bytes() + texels_.buffer().bytes() +
-                   styles_.buffer().bytes();
+                   styles_.buffer().bytes() + levels_.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
@@ -68,6 +89,8 @@ void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::Progra
         flags.insert("ONE_COLOR");
     if (view.antialias == Antialias::coverage)
         flags.insert("COVERAGE");
+    if (draws_levels_)
+        flags.insert("LEVELS");
     draw_full_screen(std::move(flags), gbuffer, programs);
 }
 
@@ -101,6 +124,10 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     program.set("decal_styles", 5);
     styles_.bind(5);
     set_grid(prepared_->grid, program);
+    if (flags.count("LEVELS") != 0) {
+        program.set("levels", 6);
+        levels_.bind(6);
+    }
     if (flags.count("ONE_COLOR") != 0) {
         const std::array<uint8_t, 4> color = prepared_->styles[0].color;
         program.set("one_color", glm::vec4(color[0], color[1], color[2], color[3]) / 255.0F);

@@ -4,6 +4,7 @@
 #include "decalgl/technique/technique.h"
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "technique/static_decals/prepared_decals.h"
 
@@ -22,13 +23,18 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
+    bool needs_levels(const View& view) const;
+    void make_levels();
     void draw_full_screen(gl::Flags flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
 
     std::shared_ptr<const PreparedDecals> prepared_;
+    MemoryAccount memory_;
     gl::TextureBuffer buckets_;
     gl::TextureBuffer cells_;
     gl::TextureBuffer texels_;
     gl::TextureBuffer styles_;
+    gl::Texture2D levels_;  // made by the first view that needs them
+    bool draws_levels_ = false;
     gl::VertexArray no_vertices_;
 };
 
