@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "decalgl/core/timing.h"
+#include "decalgl/frame/renderer.h"
 #include "decalgl/frame/scene.h"
 #include "decalgl/technique/technique.h"
 #include "decalgl/terrain/tiles.h"
@@ -35,7 +36,7 @@ struct PreparedScene {
 };
 
 // Validates and prepares. Throws Error(input), Error(memory), Error(cancelled).
-std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
+std::shared_ptr<const PreparedScene> prepare_scene(const Scene& scene, const RendererOptions& options,
                                                    const MemoryAccount& memory, const ProgressFn& progress);
 
 }  // namespace decalgl

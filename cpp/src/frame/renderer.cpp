@@ -13,6 +13,12 @@ namespace {
 
 constexpr int largest_side = 1 << 20;
 
+void require_in_range(const char* name, int value, int least, int most) {
+    if (value < least || value > most)
+        throw Error(ErrorKind::input, std::string(name) + " must be from " + std::to_string(least) + " to " +
+                                          std::to_string(most) + ", but it is " + std::to_string(value));
+}
+
 void require_options(const RendererOptions& options) {
     if (options.width < 1 || options.height < 1 || options.width > largest_side ||
         options.height > largest_side)
@@ -23,6 +29,11 @@ void require_options(const RendererOptions& options) {
         throw Error(ErrorKind::input, "terrain_error must be zero or more pixels");
     if (options.rectangle < 0)
         throw Error(ErrorKind::input, "rectangle must be zero or more pixels");
+    if (options.index != "grid" && options.index != "bvh")
+        throw Error(ErrorKind::input, "there is no index '" + options.index + "'; choose grid or bvh");
+    require_in_range("cells", options.bvh.cells, 1, 4096);
+    require_in_range("leaf_capacity", options.bvh.leaf_capacity, 1, 1024);
+    require_in_range("depth_limit", options.bvh.depth_limit, 0, 16);
 }
 
 }  // namespace
@@ -86,7 +97,7 @@ void Renderer::set_picture(int width, int height, Antialias antialias) {
 }
 
 void Renderer::preprocess(const Scene& scene, const ProgressFn& progress) {
-    auto prepared = prepare_scene(scene, state_->options.threads, state_->memory, progress);
+    auto prepared = prepare_scene(scene, state_->options, state_->memory, progress);
     const std::lock_guard<std::mutex> lock(state_->scene_mutex);
     state_->scene = std::move(prepared);
 }
