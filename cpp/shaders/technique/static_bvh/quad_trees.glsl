@@ -1,5 +1,5 @@
 // Polygons: whether an exterior of a cell, less its interiors, holds a point (quad_trees.h, polygon_group.h).
-#include "technique/static_bvh/integers.glsl"
+#include "technique/static_bvh/tree.glsl"
 
 uniform usamplerBuffer bvh_exteriors;
 uniform usamplerBuffer bvh_interiors;

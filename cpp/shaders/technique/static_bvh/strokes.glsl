@@ -1,5 +1,5 @@
 // Lines: which of a cell's segments cover a point.
-#include "technique/static_bvh/integers.glsl"
+#include "technique/static_bvh/tree.glsl"
 
 uniform usamplerBuffer bvh_segments;
 uniform usamplerBuffer bvh_owners;

@@ -2,6 +2,7 @@
 #include "shared/view_block.h"
 #include "shared/position.glsl"
 #include "technique/static_bvh/bvh_layout.h"
+#include "technique/static_bvh/integers.glsl"
 
 uniform usamplerBuffer bvh_cells;
 uniform isamplerBuffer bvh_nodes;

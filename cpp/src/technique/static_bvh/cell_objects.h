@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 
 #include "decalgl/core/parallel.h"
@@ -56,12 +57,15 @@ template <typename Visit>
 CellRecords collect_records(size_t count, size_t grain, uint32_t cell_count, const TechniqueInput& input,
                             const Stage& stage, Visit visit) {
     std::vector<uint64_t> first(block_count(count, grain) + 1, 0);
+    std::atomic<uint64_t> total{0};
     parallel_for(
         count, grain, input.threads,
         [&](size_t begin, size_t end) {
             uint64_t found = 0;
             visit(begin, end, [&found](uint32_t, uint32_t) { ++found; });
             first[begin / grain + 1] = found;
+            // Here, since to count what can never be held might take minutes.
+            require_size(total += found, "objects in cells");
         },
         stage.part(0.0, 0.4).report());
     for (size_t block = 1; block < first.size(); ++block)

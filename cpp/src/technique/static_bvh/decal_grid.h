@@ -72,9 +72,10 @@ struct DecalGrid {
             return;
         const CellRange up = rows_of(inner);
         const CellRange across = columns_of(inner);
+        const bool in_one_cell = up.first == up.last && across.first == across.last && box.holds(candidates);
         for (int32_t row = up.first; row <= up.last; ++row) {
             CellRange reached = across;
-            if (up.first != up.last || across.first != across.last) {
+            if (!in_one_cell) {
                 const CellRange exact = columns_in_row(outline, row);
                 reached = {std::max(across.first, exact.first), std::min(across.last, exact.last)};
             }

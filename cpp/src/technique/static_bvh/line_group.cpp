@@ -122,10 +122,19 @@ private:
     // The records come in draw order.
     void write_cell(Span<uint32_t> records, uint32_t first) {
         if (input_.bvh.segment_order == SegmentOrder::hilbert)
-            std::stable_sort(records.begin(), records.end(),
-                             [&](uint32_t a, uint32_t b) { return place_on_curve(a) < place_on_curve(b); });
+            sort_along_curve(records);
         for (size_t i = 0; i < records.size(); ++i)
             group_.segments[first + i] = segment_of(records[i], group_.vertices);
+    }
+
+    void sort_along_curve(Span<uint32_t> records) const {
+        std::vector<std::pair<uint32_t, uint32_t>> places(records.size());
+        for (size_t i = 0; i < records.size(); ++i)
+            places[i] = {place_on_curve(records[i]), records[i]};
+        std::stable_sort(places.begin(), places.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (size_t i = 0; i < records.size(); ++i)
+            records[i] = places[i].second;
     }
 
     uint32_t place_on_curve(uint32_t record) const {

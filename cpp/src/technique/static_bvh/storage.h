@@ -7,16 +7,16 @@
 
 namespace decalgl::bvh {
 
-// Texels in one array: twice what drivers read from one texture buffer as a rule. Hostile data asks for more, by
-// way of features that repeat in every cell.
-constexpr uint64_t largest_array = uint64_t{1} << 28;
+// Texels in one array: what drivers read from one texture buffer as a rule. Hostile data asks for more, by way of
+// features that repeat in every cell.
+constexpr uint64_t largest_array = uint64_t{1} << 27;
 
 inline void require_size(uint64_t count, const char* what) {
     if (count > largest_array)
         throw Error(ErrorKind::memory,
-                    "the BVH index would need " + std::to_string(count) + " " + what + ", more than the " +
-                        std::to_string(largest_array) +
-                        " that one index can hold; use fewer cells, index=\"grid\", or fewer features");
+                    "the BVH index would need more than " + std::to_string(largest_array) + " " + what +
+                        ", which no shader could read; use fewer cells, index=\"grid\", or "
+                        "fewer features");
 }
 
 // New elements are not set.
