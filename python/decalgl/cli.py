@@ -84,6 +84,7 @@ def render(
     ] = None,
     memory_limit: Annotated[Text, typer.Option(help="Such as 800MB or 2GB.")] = None,
     backend: Annotated[Text, typer.Option(help="auto, egl or osmesa.")] = None,
+    index: Annotated[Text, typer.Option(help="grid, bvh or thoeny: how static layers are found.")] = None,
     stats: Annotated[bool, typer.Option("--stats", help="Print what the picture cost.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="No progress bars.")] = False,
 ) -> None:
@@ -101,6 +102,7 @@ def render(
             terrain_error=terrain_error,
             memory_limit=None if memory_limit is None else parse_bytes(memory_limit),
             backend=backend,
+            index=index,
         ),
     )
     with _drawing.ProgressBars(messages, hidden=quiet) as bars:

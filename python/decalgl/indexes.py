@@ -56,7 +56,9 @@ class BvhIndex:
         for name, known in CHOICES.items():
             value = getattr(self, name)
             if value not in known:
-                raise InputError(f"BvhIndex: {name} must be {known[0]!r} or {known[1]!r}, but it is {value!r}.")
+                raise InputError(
+                    f"BvhIndex: {name} must be {known[0]!r} or {known[1]!r}, but it is {value!r}."
+                )
 
     @classmethod
     def thoeny(cls) -> BvhIndex:
