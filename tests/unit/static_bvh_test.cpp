@@ -1,4 +1,5 @@
-// The BVH index against brute force: polygons exactly, lattice point by lattice point, and lines to a quantum.
+// The BVH index against brute force: polygons exactly, lattice point by lattice point, and lines to a
+// quantum.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

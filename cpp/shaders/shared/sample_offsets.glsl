@@ -1,5 +1,5 @@
-// Where in a pixel the samples of antialias="coverage" lie, counted from its centre: a scrambled (0, 5, 2)-net
-// (Sobol' points), chosen for the smallest error on straight edges by tools/sample_pattern.py.
+// Where in a pixel the samples of antialias="coverage" lie, counted from its centre: a scrambled (0, 5,
+// 2)-net (Sobol' points), chosen for the smallest error on straight edges by tools/sample_pattern.py.
 const int sample_count = 32;
 const vec2 sample_offsets[sample_count] = vec2[](
     vec2(-0.453125, 0.140625), vec2(0.078125, -0.421875), vec2(-0.109375, -0.015625), vec2(0.421875, 0.359375),

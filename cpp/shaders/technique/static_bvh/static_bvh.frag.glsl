@@ -1,5 +1,5 @@
-// Static decals of one data group, by the structures of Zechmeister 2020 (algorithm 3.5, section 4.4.1) and of Thöny et
-// al. 2018 (section 3.2).
+// Static decals of one data group, by the structures of Zechmeister 2020 (algorithm 3.5, section 4.4.1) and
+// of Thöny et al. 2018 (section 3.2).
 //
 //     pixel ─▶ map position ─▶ cell ─▶ its tree, without a stack: down into boxes that hold the point, else to the
 //     right; at a leaf a segment, or a ring's subtree; front to back until nothing behind can show
@@ -25,7 +25,8 @@ uniform sampler2D surface_texture;
 
 const uint no_slot = 0xFFFFFFFFu;
 
-// What has been found so far. In draw order, `slot` is the last feature added to the colour; else the one to be shown.
+// What has been found so far. In draw order, `slot` is the last feature added to the colour; else the one to
+// be shown.
 struct Found {
     vec4 sum;
     uint slot;

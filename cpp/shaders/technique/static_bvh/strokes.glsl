@@ -29,8 +29,8 @@ float distance2(ivec2 point, ivec2 a, ivec2 b) {
     return dot(apart, apart);
 }
 
-// A candidate of the cell: the line that it belongs to, and how far it is from the point, if that is within its
-// half width; else infinitely far.
+// A candidate of the cell: the line that it belongs to, and how far it is from the point, if that is within
+// its half width; else infinitely far.
 struct Candidate {
     uint slot;
     float distance2;

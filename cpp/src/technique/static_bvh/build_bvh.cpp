@@ -1,5 +1,5 @@
-// From layers to data groups, each with a grid, its cells' trees and, for polygons, quad-trees. Everything is built on
-// all cores, and is the same bytes on any number of them.
+// From layers to data groups, each with a grid, its cells' trees and, for polygons, quad-trees. Everything is
+// built on all cores, and is the same bytes on any number of them.
 #include <algorithm>
 #include <cmath>
 

@@ -34,7 +34,8 @@ struct Stage {
     }
 };
 
-// An entry for each object in each cell that it reaches into, sorted by cell, otherwise in the objects' order.
+// An entry for each object in each cell that it reaches into, sorted by cell, otherwise in the objects'
+// order.
 struct CellRecords {
     WorkingArray<uint32_t> objects;
     WorkingArray<uint32_t> starts;  // of each cell, and the end
@@ -85,7 +86,8 @@ CellRecords collect_records(size_t count, size_t grain, uint32_t cell_count, con
     return sort_records(std::move(cells), std::move(objects), cell_count, input);
 }
 
-// The trees of all cells, whose objects are counted already; box_of(cell, object) with places in the whole list.
+// The trees of all cells, whose objects are counted already; box_of(cell, object) with places in the whole
+// list.
 template <typename BoxOf>
 void plant_trees(DecalGroup& group, MemoryCharge& charge, unsigned threads, const Stage& stage,
                  BoxOf box_of) {

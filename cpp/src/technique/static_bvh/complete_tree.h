@@ -1,8 +1,9 @@
-// Complete binary trees of boxes over the objects of a cell, after Zechmeister 2020, sections 4.2.1 and 4.4.1.
+// Complete binary trees of boxes over the objects of a cell, after Zechmeister 2020, sections 4.2.1 and
+// 4.4.1.
 //
-// Empty leaves on the right make their number a power of two, so nodes need no links (equations 4.5 to 4.7). Here
-// the root is node 1 and the children of k are 2k and 2k + 1, which turns "up to the first node with a right
-// sibling, then to that" into a shift:
+// Empty leaves on the right make their number a power of two, so nodes need no links (equations 4.5 to 4.7).
+// Here the root is node 1 and the children of k are 2k and 2k + 1, which turns "up to the first node with a
+// right sibling, then to that" into a shift:
 //
 //                1                     binary:  k       = 1011   a right child of a right child
 //          2           3                        strip 1s =  10
@@ -55,8 +56,8 @@ inline void fill_tree(Span<const LatticeBox> objects, LatticeBox* nodes) {
     }
 }
 
-// Visits the objects in whose boxes `reached` holds, in order, as algorithm 3.5 finds them. Stops where `on_object`
-// returns false. Returns the number of nodes looked at.
+// Visits the objects in whose boxes `reached` holds, in order, as algorithm 3.5 finds them. Stops where
+// `on_object` returns false. Returns the number of nodes looked at.
 template <typename Reached, typename OnObject>
 uint32_t traverse(const LatticeBox* nodes, uint32_t objects, Reached reached, OnObject on_object) {
     const uint32_t leaf = first_leaf(objects);

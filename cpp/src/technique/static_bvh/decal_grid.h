@@ -1,9 +1,9 @@
 // The decal grid: which cells a segment or a node reaches into.
 //
 // Zechmeister 2020, sections 3.2.1 and 4.2.1: a regular grid over the common box of all decals. Segments are
-// widened to quadrilaterals, taken to the cells of their box, and kept where quadrilateral and cell overlap. For
-// a convex outline that is exact row by row: the part of it that lies in a row of cells reaches from one x to
-// another.
+// widened to quadrilaterals, taken to the cells of their box, and kept where quadrilateral and cell overlap.
+// For a convex outline that is exact row by row: the part of it that lies in a row of cells reaches from one
+// x to another.
 //
 //     +-----+-----+-----+-----+
 //     |     |     |    /\     |      row 1: cells 2 and 3

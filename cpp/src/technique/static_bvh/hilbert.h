@@ -1,5 +1,5 @@
-// Places along Hilbert's curve: what is close on it is close on the map. Thöny et al. 2018, section 3.1, sort the
-// segments of a cell along such a curve, by their midpoints.
+// Places along Hilbert's curve: what is close on it is close on the map. Thöny et al. 2018, section 3.1, sort
+// the segments of a cell along such a curve, by their midpoints.
 //
 //     order 1   1--2      each quadrant holds the curve of one order less, turned so that the ends meet
 //               |  |

@@ -1,7 +1,7 @@
 // The lattice: integer coordinates for everything the BVH index holds, and for the pixels that ask it.
 //
-// Counted from a corner of the position grid's blocks, the terrain is at most 2^30 quanta wide, and vertices lie
-// at most half of that beyond it, so differences fit 32 bits and products of two of them 64:
+// Counted from a corner of the position grid's blocks, the terrain is at most 2^30 quanta wide, and vertices
+// lie at most half of that beyond it, so differences fit 32 bits and products of two of them 64:
 //
 //     -2^29          0             terrain            2^30          2^30 + 2^29
 //       |............[#################################]................|
@@ -64,7 +64,8 @@ struct Lattice {
     int32_t first_block_y = 0;
     LatticeBox terrain{};  // nothing outside is ever seen
 
-    // `reach`: half the width of the widest line, metres; the lattice is coarser where that passes its margin.
+    // `reach`: half the width of the widest line, metres; the lattice is coarser where that passes its
+    // margin.
     static Lattice over(const Bounds& bounds, const PositionGrid& positions, double reach) {
         const double extent =
             std::max(bounds.max_x - bounds.min_x, bounds.max_y - bounds.min_y) + positions.block_size;

@@ -47,9 +47,9 @@ void narrow(double start, double step, double& first, double& last) {
     last = std::min(last, std::max(t0, t1));
 }
 
-// What is left on the lattice of a segment that leaves it; always cut from the lower end, or the left one of a level
-// segment, so that neighbours get the same cuts. Of a ring's edge, what lies beside the lattice moves onto its
-// border.
+// What is left on the lattice of a segment that leaves it; always cut from the lower end, or the left one of
+// a level segment, so that neighbours get the same cuts. Of a ring's edge, what lies beside the lattice moves
+// onto its border.
 template <typename OnSegment>
 void cut(Place a, Place b, bool is_ring, OnSegment on_segment) {
     if (b.y < a.y || (b.y == a.y && b.x < a.x))

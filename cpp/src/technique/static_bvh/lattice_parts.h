@@ -1,7 +1,7 @@
 // Lines and rings on the lattice, in the order in which they are drawn.
 //
-// A part keeps its vertices as a chain, so that neighbouring segments share them. One that leaves the lattice is
-// cut, segment by segment, and becomes pairs of vertices:
+// A part keeps its vertices as a chain, so that neighbouring segments share them. One that leaves the lattice
+// is cut, segment by segment, and becomes pairs of vertices:
 //
 //     chain   0--1--2--3      segments 0-1 1-2 2-3, and 3-0 for a ring
 //     pairs   0--1  2--3      segments 0-1 2-3

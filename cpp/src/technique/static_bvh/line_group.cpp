@@ -7,8 +7,8 @@ namespace {
 
 constexpr size_t vertices_at_once = 1 << 14;
 
-// Vertices are fewer than this (storage.h). A segment goes by its first one; the second is the next, or the same
-// one for a line of a single vertex.
+// Vertices are fewer than this (storage.h). A segment goes by its first one; the second is the next, or the
+// same one for a line of a single vertex.
 constexpr uint32_t dot_flag = 1U << 31;
 
 Segment segment_of(uint32_t record, const LargeArray<LatticePoint>& vertices) {

@@ -163,7 +163,8 @@ private:
         }
     }
 
-    // Turns counts into places, child after child. The children of the k-th node that is split are 4 k to 4 k + 3.
+    // Turns counts into places, child after child. The children of the k-th node that is split are 4 k to 4 k
+    // + 3.
     static uint64_t place_children(std::vector<Task>& tasks, std::vector<OpenNode>& children) {
         uint64_t total = 0;
         size_t family = 0;

@@ -1,8 +1,9 @@
 // Quad-trees of rings (Zechmeister 2020, sections 3.2.1 and 4.2.1).
 //
-// The root is the ring's box. A node with more than `leaf_capacity` edges is cut into four, down to `depth_limit`;
-// the cut follows the box, so nodes are as oblong as the ring. A leaf without edges is inside or outside. Another
-// one keeps the rows that each of its edges takes there, and closing edges along its left border:
+// The root is the ring's box. A node with more than `leaf_capacity` edges is cut into four, down to
+// `depth_limit`; the cut follows the box, so nodes are as oblong as the ring. A leaf without edges is inside
+// or outside. Another one keeps the rows that each of its edges takes there, and closing edges along its left
+// border:
 //
 //     +-----------+-----+-----+
 //     |           |     |     |       a partial leaf      +-----------+
@@ -13,13 +14,13 @@
 //     |    /|     |###########|                           | 1 .       |     the point's row and cross it at or
 //     +-----+-----+-----------+                           +-----------+     left of the point
 //
-// Children are boxes of lattice points that touch without sharing any, and what an edge means for a box is decided
-// exactly (ring_edge.h). So no child is enlarged, and clipping an edge to its rows moves nothing, where the thesis
-// expands the nodes and rounds the cuts.
+// Children are boxes of lattice points that touch without sharing any, and what an edge means for a box is
+// decided exactly (ring_edge.h). So no child is enlarged, and clipping an edge to its rows moves nothing,
+// where the thesis expands the nodes and rounds the cuts.
 //
-// All trees grow together, level by level: a level is one queue of nodes and one list of their edges, and both are
-// worked off in pieces of even size. So one ring of millions of edges is built on all cores, as are millions of
-// rings.
+// All trees grow together, level by level: a level is one queue of nodes and one list of their edges, and
+// both are worked off in pieces of even size. So one ring of millions of edges is built on all cores, as are
+// millions of rings.
 #pragma once
 
 #include "technique/static_bvh/cell_objects.h"

@@ -1,8 +1,8 @@
 // Edges of rings, decided exactly.
 //
-// An edge a-b goes upwards and owns the rows a.y <= y < b.y. In each it has a crossing: the first lattice point at
-// or right of it. A point is inside when an odd number of edges cross its row at or left of it; so each lattice
-// point lies in exactly one of two neighbours, whatever box the edge is looked at in.
+// An edge a-b goes upwards and owns the rows a.y <= y < b.y. In each it has a crossing: the first lattice
+// point at or right of it. A point is inside when an odd number of edges cross its row at or left of it; so
+// each lattice point lies in exactly one of two neighbours, whatever box the edge is looked at in.
 //
 //       y            b         crossing(y) = a.x + ceil((y - a.y) * dx / dy)
 //       |        . x

@@ -7,8 +7,8 @@
 
 namespace decalgl::bvh {
 
-// Texels in one array: what drivers read from one texture buffer as a rule. Hostile data asks for more, by way of
-// features that repeat in every cell.
+// Texels in one array: what drivers read from one texture buffer as a rule. Hostile data asks for more, by
+// way of features that repeat in every cell.
 constexpr uint64_t largest_array = uint64_t{1} << 27;
 
 inline void require_size(uint64_t count, const char* what) {
