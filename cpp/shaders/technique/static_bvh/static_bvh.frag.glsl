@@ -1,13 +1,13 @@
 // Static decals of one data group, by the structures of Zechmeister 2020 (algorithm 3.5, section 4.4.1) and
 // of Thöny et al. 2018 (section 3.2).
 //
-//     pixel ─▶ map position ─▶ cell ─▶ its tree, without a stack: down into boxes that hold the point, else to the
-//     right; at a leaf a segment, or a ring's subtree; front to back until nothing behind can show
+//     pixel ─▶ map position ─▶ cell ─▶ its tree, without a stack: down into boxes that hold the point,
+//     else to the right; at a leaf a segment, or a ring's subtree; front to back until nothing shows behind
 //
 // RINGS          a group of polygons, else of lines
 // UNSORTED       segments lie along a Hilbert curve: the walk goes on to the end
 // NEAREST        the nearest line that covers the point is the only one seen
-// COVERAGE       the mean of 32 points of the pixel's area, each walked by itself, as the thesis's multi-sampling does
+// COVERAGE       the mean of 32 points of the pixel's area, each walked by itself
 // IDS            writes 1 + slot of the topmost feature at the centre, nothing where there is none
 #include "shared/ray.glsl"
 #include "technique/static_bvh/tree.glsl"

@@ -1,6 +1,6 @@
 // Objects by cell: lists of what reaches into each, and a tree over each list.
 //
-//     visit all objects twice, to count and to write (cell, object)  ──▶  stable sort by cell  ──▶  lists in order
+//     visit all objects, to count and to write (cell, object) ──▶ stable sort by cell ──▶ lists in order
 #pragma once
 
 #include <algorithm>

@@ -11,8 +11,8 @@
 //     |         __|_-'|#|#####|       edges 1 and 2       #     2 .   |     from the border on
 //     +-----+-.'--+---+-+-----+       take these rows     #        .  |
 //     |     |/    |   inside  |                           |  .        |   inside = an odd number of edges own
-//     |    /|     |###########|                           | 1 .       |     the point's row and cross it at or
-//     +-----+-----+-----------+                           +-----------+     left of the point
+//     |    /|     |###########|                           | 1 .       |     the point's row and cross it at
+//     +-----+-----+-----------+                           +-----------+     or left of the point
 //
 // Children are boxes of lattice points that touch without sharing any, and what an edge means for a box is
 // decided exactly (ring_edge.h). So no child is enlarged, and clipping an edge to its rows moves nothing,
