@@ -1,4 +1,4 @@
-"""Finds the 32 sample positions of `cpp/shaders/technique/static_decals/area.glsl`.
+"""Finds the 32 sample positions of `cpp/shaders/shared/sample_offsets.glsl`.
 
 Among many scrambled (0, 5, 2)-nets (Sobol' points with Owen's scrambling), keeps the one whose mean over the samples
 errs least, in the root mean square, on straight edges at every angle and offset that cross the pixel.

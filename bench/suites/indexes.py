@@ -9,12 +9,12 @@ from __future__ import annotations
 import statistics
 from typing import TYPE_CHECKING
 
-import decalgl as dg
-
 from ..measure import drawing, interleaved, preprocessing
 from ..workload import KINDS
 
 if TYPE_CHECKING:
+    import decalgl as dg
+
     from ..records import Records
     from ..workload import Workload
 
@@ -22,9 +22,6 @@ INDEXES = {"isolines": ("bvh", "thoeny"), "iso-bands": ("bvh",)}
 
 
 def measure(work: Workload, records: Records) -> None:
-    if not hasattr(dg, "BvhIndex"):
-        work.say("there is no second index to compare with")
-        return
     for kind in KINDS:
         name = f"{kind} {work.middle}"
         scene = work.scene(kind, work.middle)

@@ -27,6 +27,20 @@ Antialias antialias_named(const std::string& name) {
     throw Error(ErrorKind::input, "there is no antialias '" + name + "'; choose none or coverage");
 }
 
+BvhOptions bvh_options(const py::dict& given) {
+    BvhOptions options;
+    options.cells = given["cells"].cast<int>();
+    options.leaf_capacity = given["leaf_capacity"].cast<int>();
+    options.depth_limit = given["depth_limit"].cast<int>();
+    if (given["segment_order"].cast<std::string>() == "hilbert")
+        options.segment_order = SegmentOrder::hilbert;
+    if (given["composition"].cast<std::string>() == "nearest")
+        options.composition = Composition::nearest;
+    if (given["passes"].cast<std::string>() == "kind")
+        options.passes = PassGrouping::kind;
+    return options;
+}
+
 // A read-only view of a frame's values, which keeps the frame.
 template <typename T>
 py::array_t<T> view_of(const std::vector<T>& values, std::vector<py::ssize_t> shape,
@@ -171,7 +185,8 @@ void register_renderer(py::module_& module) {
 
     py::class_<Renderer>(module, "Renderer")
         .def(py::init([](int width, int height, const std::string& antialias, double terrain_error,
-                         uint64_t memory_limit, const std::string& backend, unsigned threads, int rectangle) {
+                         uint64_t memory_limit, const std::string& backend, unsigned threads, int rectangle,
+                         const std::string& index, const py::dict& bvh) {
                  RendererOptions options;
                  options.width = width;
                  options.height = height;
@@ -181,10 +196,13 @@ void register_renderer(py::module_& module) {
                  options.backend = backend;
                  options.threads = threads;
                  options.rectangle = rectangle;
+                 options.index = index;
+                 options.bvh = bvh_options(bvh);
                  return Renderer(options);
              }),
              py::arg("width"), py::arg("height"), py::arg("antialias"), py::arg("terrain_error"),
-             py::arg("memory_limit"), py::arg("backend"), py::arg("threads"), py::arg("rectangle"))
+             py::arg("memory_limit"), py::arg("backend"), py::arg("threads"), py::arg("rectangle"),
+             py::arg("index"), py::arg("bvh"))
         .def(
             "set_picture",
             [](Renderer& renderer, int width, int height, const std::string& antialias) {

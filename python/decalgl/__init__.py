@@ -28,12 +28,14 @@ from .errors import (
 )
 from .features import FeatureTable
 from .frame import Frame, Picked, PreparedLayer, Stats
+from .indexes import BvhIndex
 from .renderer import Renderer
 from .scene import Layer, Relief, Scene
 from .scene_file import load_scene
 from .terrain import Terrain
 
 __all__ = [
+    "BvhIndex",
     "Camera",
     "CancelledError",
     "Coloring",

@@ -79,6 +79,8 @@ class Renderer:
         backend: str,
         threads: int,
         rectangle: int,
+        index: str,
+        bvh: dict[str, Any],
     ) -> None: ...
     def set_picture(self, width: int, height: int, antialias: str) -> None: ...
     def preprocess(

@@ -88,6 +88,7 @@ def render(
         Path | None,
         typer.Option(help="A file that keeps the prepared scene, so that the next picture of it is quick."),
     ] = None,
+    index: Annotated[Text, typer.Option(help="grid, bvh or thoeny: how static layers are found.")] = None,
     stats: Annotated[bool, typer.Option("--stats", help="Print what the picture cost.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="No progress bars.")] = False,
 ) -> None:
@@ -106,6 +107,7 @@ def render(
             memory_limit=None if memory_limit is None else parse_bytes(memory_limit),
             backend=backend,
             cache=cache,
+            index=index,
         ),
     )
     with _drawing.ProgressBars(messages, hidden=quiet) as bars:

@@ -20,6 +20,7 @@ from ._raster import check_memory
 from .camera import checked_size
 from .errors import CancelledError, InputError, UnsupportedError, warn
 from .frame import Frame, PreparedLayer
+from .indexes import BvhIndex, resolve_index
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -55,6 +56,7 @@ class Renderer:
     backend: "auto", "egl" or "osmesa".
     threads: for preprocessing; None: all cores.
     tile: larger pictures are drawn in squares of this many pixels; None: chosen. The picture is the same.
+    index: of static layers, "grid" (the faster one), "bvh", "thoeny" or a `BvhIndex`: see `decalgl.indexes`.
 
     Call everything but `preprocess`, `save` and `open` from one thread. A call that fails leaves the renderer usable.
     Raises InputError for arguments out of range, UnsupportedError for what this version does not draw.
@@ -69,16 +71,19 @@ class Renderer:
         backend: str = "auto",
         threads: int | None = None,
         tile: int | None = None,
+        index: str | BvhIndex = "grid",
     ) -> None:
         if backend not in BACKENDS:
             raise InputError(f"There is no backend {backend!r}; choose 'auto', 'egl' or 'osmesa'.")
         width, height = _checked_picture(size)
+        core_index, bvh = resolve_index(index)
         self._options = {
             "terrain_error": terrain_error,
             "memory_limit": memory_limit,
             "backend": backend,
             "threads": threads,
             "tile": tile,
+            "index": index,
         }
         self.antialias = antialias
         self._core = _core.Renderer(
@@ -90,6 +95,8 @@ class Renderer:
             backend=backend,
             threads=_checked_count(threads, "threads", "threads", MOST_THREADS),
             rectangle=_checked_count(tile, "tile", "pixels", LARGEST_SIDE),
+            index=core_index,
+            bvh=bvh.to_dict(),
         )
         self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
@@ -215,6 +222,7 @@ DEFAULT_OPTIONS = {
     "backend": "auto",
     "threads": None,
     "tile": None,
+    "index": "grid",
 }
 
 

@@ -9,7 +9,7 @@
     [views.NAME]                     look_at  = { eye = [x, y, z], target = [x, y, z], fov, crs }
                                      orbit    = { target = [x, y, z], distance, azimuth, elevation, fov, crs }
                                      top_down = { bounds = [xmin, ymin, xmax, ymax], margin, crs }
-    [picture]                        size = [width, height], antialias, background ("none": transparent), view
+    [picture]                        size = [width, height], antialias, background ("none": transparent), view, index
 
 Layers are drawn bottom to top. Paths are relative to the file; a path that ends in .gz is unpacked while it
 is read. Positions are metres of the scene's plane (heights after exaggeration) unless the view names a `crs`
@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ._crs import parse_crs
 from ._tables import StrictTable
 from .errors import FileError, InputError
+from .indexes import INDEXES
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -52,6 +53,7 @@ class PictureOptions:
     antialias: str = "coverage"
     background: str | None = "sky"
     view: str | None = None
+    index: str = "grid"
 
 
 @dataclass(frozen=True)
@@ -328,11 +330,14 @@ def _parse_picture(table: StrictTable) -> PictureOptions:
         raise table.error(
             f"size must be two whole numbers of pixels above 0, [width, height], but it is {size!r}."
         )
-    antialias, view, background = table.text("antialias"), table.text("view"), table.text("background")
-    table.finish()
     given = _present(
-        size=tuple(size) if size else None, antialias=antialias, view=view, background=background
+        size=tuple(size) if size else None,
+        antialias=table.text("antialias"),
+        view=table.text("view"),
+        background=table.text("background"),
+        index=table.choice("index", INDEXES),
     )
-    if background == "none":
+    table.finish()
+    if given.get("background") == "none":
         given["background"] = None
     return PictureOptions(**given)

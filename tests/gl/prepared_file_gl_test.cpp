@@ -33,11 +33,17 @@ Frame draw(Renderer& renderer) {
     return renderer.render();
 }
 
+RendererOptions of_size(int side) {
+    RendererOptions options;
+    options.width = options.height = side;
+    return options;
+}
+
 }  // namespace
 
 TEST_CASE("a renderer that opens a file draws what the one that saved it drew") {
     const ScratchFolder folder;
-    Renderer first({64, 64}), second({64, 64});
+    Renderer first(of_size(64)), second(of_size(64));
     CHECK(kind_of([&] { first.save(folder.file("map")); }) == ErrorKind::input);
     first.preprocess(sample_scene());
     first.save(folder.file("map"));
@@ -55,7 +61,7 @@ TEST_CASE("a renderer that opens a file draws what the one that saved it drew") 
 
 TEST_CASE("forged files end in an error or in a picture") {
     const ScratchFolder folder;
-    Renderer renderer({24, 24});
+    Renderer renderer(of_size(24));
     renderer.preprocess(sample_scene());
     renderer.save(folder.file("map"));
     const Bytes whole = read_file(folder.file("map"));

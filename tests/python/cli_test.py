@@ -286,3 +286,17 @@ def test_the_module_runs_as_a_program(tmp_path: Path) -> None:
     outcome = subprocess.run(command, capture_output=True, text=True, check=False)
     assert outcome.returncode == 2
     assert outcome.stderr.startswith("error: There is no file")
+
+
+def test_another_index_draws_the_same(scene: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    for index in ("grid", "bvh", "thoeny"):
+        code, _, errors = run(
+            capfd, "render", scene, "-o", tmp_path / f"{index}.png", "--index", index, "--size", "64x36"
+        )
+        assert code == 0, errors
+        assert (
+            np.abs(pixels(tmp_path / f"{index}.png").astype(int) - pixels(tmp_path / "grid.png")).max() <= 2
+        )
+    code, _, errors = run(capfd, "render", scene, "-o", tmp_path / "x.png", "--index", "tree")
+    assert code == 2
+    assert "There is no index='tree'" in errors

@@ -257,6 +257,15 @@ def test_nothing_runs_that_the_scene_does_not_need() -> None:
     assert "RAMP" in variants(hilly_scene(relief=dg.Relief(cmap="Greens")))
 
 
+def test_levels_of_detail_are_for_far_pictures_alone() -> None:
+    scene = flat_scene()
+    scene.add_polygons([box(20, 20, 60, 60)])
+    near, far = dg.Camera.top_down((30, 30, 50, 50)), dg.Camera.top_down((-20_000, -20_000, 20_000, 20_000))
+    assert "LEVELS" not in variants(scene, antialias="coverage", camera=near)
+    assert "LEVELS" in variants(scene, antialias="coverage", camera=far)
+    assert "LEVELS" not in variants(scene, antialias="none", camera=far)
+
+
 def test_ids_cost_nothing_until_they_are_read() -> None:
     scene = flat_scene()
     scene.add_polygons([box(20, 20, 60, 60)])

@@ -44,9 +44,10 @@ def core_scene(terrain: dg.Terrain | None = None) -> _core.Scene:
     return _core.Scene(ground.z, ground.x0, ground.y0, ground.dx, ground.dy, 1.0, _core.Relief())
 
 
-@pytest.fixture(scope="module")
-def renderer() -> _core.Renderer:
-    return _core.Renderer(16, 16, "coverage", 0.5, 1 << 30, "auto", 1, 0)
+@pytest.fixture(scope="module", params=["grid", "bvh"])
+def renderer(request: pytest.FixtureRequest) -> _core.Renderer:
+    few = dg.BvhIndex(cells=20)
+    return _core.Renderer(16, 16, "coverage", 0.5, 1 << 30, "auto", 1, 0, request.param, few.to_dict())
 
 
 CAMERA = _core.Camera((50.0, 50.0, 100.0), (50.0, 50.0, 0.0), (0.0, 1.0, 0.0), 60.0, 0.0)

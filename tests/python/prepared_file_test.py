@@ -404,6 +404,16 @@ def test_a_scene_keeps_its_cache(tmp_path: Path) -> None:
     assert not path.exists()
 
 
+def test_the_other_index_is_not_kept_on_disk(tmp_path: Path) -> None:
+    renderer = dg.Renderer(size=SIZE, index="bvh")
+    with pytest.raises(dg.UnsupportedError, match="leave cache out"):
+        renderer.preprocess(sample_scene(), cache=tmp_path / "map.decal")
+    renderer.preprocess(sample_scene())
+    with pytest.raises(dg.UnsupportedError, match="index 'grid'"):
+        renderer.save(tmp_path / "map.decal")
+    assert not list(tmp_path.iterdir())
+
+
 def test_damaged_caches_are_replaced_and_other_files_are_not(saved: Path, tmp_path: Path) -> None:
     path = tmp_path / "map.decal"
     whole = saved.read_bytes()

@@ -66,6 +66,7 @@ def test_everything_is_described(tmp_path: Path) -> None:
     size = [640, 480]
     background = "none"
     view = "map"
+    index = "thoeny"
     """
     scene = read_scene_file(write(tmp_path, text))
     assert scene.terrain == {"path": str(tmp_path / "dem.tif"), "crs": "EPSG:32604"}
@@ -77,7 +78,7 @@ def test_everything_is_described(tmp_path: Path) -> None:
     assert (roads.kind, roads.source) == ("lines", "/data/roads.gpkg")
     assert roads.keywords == {"name": "roads", "width": 6.0, "width_units": "m"}
     assert scene.views["valley"].keywords == {"eye": (0, 0, 100), "target": (1, 2, 3), "fov": 40}
-    assert scene.picture == PictureOptions((640, 480), "coverage", None, "map")
+    assert scene.picture == PictureOptions((640, 480), "coverage", None, "map", "thoeny")
 
 
 def test_a_flat_terrain_is_enough(tmp_path: Path) -> None:

@@ -14,6 +14,12 @@ using namespace decalgl::test;
 
 namespace {
 
+RendererOptions on_threads(unsigned threads) {
+    RendererOptions options;
+    options.threads = threads;
+    return options;
+}
+
 constexpr int32_t side = 70;  // samples: tiles of two sizes
 
 Scene sample_scene() {
@@ -42,7 +48,7 @@ Scene sample_scene() {
 
 std::string save_sample(const ScratchFolder& folder) {
     const std::string path = folder.file("map.decal");
-    save_scene(*prepare_scene(sample_scene(), 1, MemoryAccount(), {}), path, 1, {});
+    save_scene(*prepare_scene(sample_scene(), on_threads(1), MemoryAccount(), {}), path, 1, {});
     return path;
 }
 
@@ -73,7 +79,7 @@ void use(const PreparedScene& scene) {
 TEST_CASE("a scene that is opened answers as the one that was saved") {
     const ScratchFolder folder;
     const std::string path = save_sample(folder);
-    const auto saved = prepare_scene(sample_scene(), 1, MemoryAccount(), {});
+    const auto saved = prepare_scene(sample_scene(), on_threads(1), MemoryAccount(), {});
     const MemoryAccount memory;
     const auto opened = open_scene(path, 1, memory);
     CHECK(memory.total() == 0);
@@ -103,7 +109,7 @@ TEST_CASE("scenes without layers or without ground are saved too") {
          {Heightfield({1.0F}, 1, 1, 0, 0, 1, 1), Heightfield({std::nanf(""), 1.0F}, 1, 2, 0, 0, 1, 1),
           Heightfield::flat({0.0, 0.0, 10.0, 10.0}, 2.0F)}) {
         scene.terrain = terrain;
-        save_scene(*prepare_scene(scene, 1, MemoryAccount(), {}), folder.file("bare"), 1, {});
+        save_scene(*prepare_scene(scene, on_threads(1), MemoryAccount(), {}), folder.file("bare"), 1, {});
         const auto opened = open_scene(folder.file("bare"), 1, MemoryAccount());
         CHECK(opened->passes.empty());
         CHECK(opened->terrain.heights().size() == terrain.heights().size());
@@ -114,7 +120,7 @@ TEST_CASE("a cache is opened for the scene that it was made from alone") {
     const ScratchFolder folder;
     const std::string path = folder.file("map.decal");
     const auto opens = [&](const Scene& scene) {
-        const auto prepared = prepare_cached(scene, path, 1, MemoryAccount(), {});
+        const auto prepared = prepare_cached(scene, path, on_threads(1), MemoryAccount(), {});
         REQUIRE_FALSE(picks(*prepared).empty());
         return prepared->timings.passes().front().name == "open";
     };

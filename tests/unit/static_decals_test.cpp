@@ -5,6 +5,7 @@
 #include <random>
 
 #include "decalgl/core/error.h"
+#include "technique/static_decals/levels.h"
 #include "technique/static_decals/prepared_decals.h"
 
 using namespace decalgl;
@@ -357,4 +358,43 @@ TEST_CASE("many large polygons over each other do not fill the memory", "[static
     const auto decals = build({polygons(rings)});
     CHECK(decals->charge.bytes() < (uint64_t{128} << 20));
     CHECK(decals->query(1500, 2500).size() == rings.size());
+}
+
+TEST_CASE("levels of detail keep the coverage of every kind of feature", "[static]") {
+    RandomMap random(17);
+    std::vector<Ring> rings, parts;
+    for (int i = 0; i < 30; ++i)
+        rings.push_back(random.part(3 + i % 5, 150.0, 0.0));
+    for (int i = 0; i < 60; ++i)
+        parts.push_back(random.part(4, 200.0, 0.0));
+    const double width = GENERATE(0.7, 60.0);
+    const auto decals = build({polygons(rings), lines(parts, {width})});
+    const LevelRaster raster = draw_finest_level(*decals);
+    const double texel = decals->grid.bucket_size / LEVEL_TEXELS;
+    REQUIRE(raster.width == decals->grid.columns * LEVEL_TEXELS);
+    // Means over blocks of 8 x 8 texels against as many points as an area needs.
+    double bias = 0.0;
+    int blocks = 0;
+    for (int row = 0; row + 8 <= raster.height; row += 8) {
+        for (int column = 0; column + 8 <= raster.width; column += 8) {
+            double drawn = 0.0, hit = 0.0;
+            for (int y = 0; y < 8; ++y)
+                for (int x = 0; x < 8; ++x)
+                    drawn +=
+                        raster.texels[static_cast<size_t>(4 * ((row + y) * raster.width + column + x) + 3)] /
+                        255.0;
+            constexpr int points = 400;
+            for (int i = 0; i < points; ++i) {
+                const double x = decals->grid.left() + (column + 8.0 * random.between(0, 1)) * texel;
+                const double y = decals->grid.bottom() + (row + 8.0 * random.between(0, 1)) * texel;
+                hit += decals->query(x, y).empty() ? 0.0 : 1.0;
+            }
+            const double difference = drawn / 64.0 - hit / points;
+            REQUIRE(std::abs(difference) < 0.13);  // five deviations of 400 points
+            bias += difference;
+            ++blocks;
+        }
+    }
+    CHECK(blocks > 50);
+    CHECK(std::abs(bias / blocks) < 0.005);
 }

@@ -244,16 +244,18 @@ std::shared_ptr<PreparedScene> open_scene(const std::string& path, unsigned thre
     return read_scene(ArchiveReader(path), threads, memory);
 }
 
-std::shared_ptr<PreparedScene> prepare_cached(const Scene& scene, const std::string& cache, unsigned threads,
-                                              const MemoryAccount& memory, const ProgressFn& progress) {
+std::shared_ptr<PreparedScene> prepare_cached(const Scene& scene, const std::string& cache,
+                                              const RendererOptions& options, const MemoryAccount& memory,
+                                              const ProgressFn& progress) {
     const Stopwatch watch;
+    const unsigned threads = options.threads;
     const Digest fingerprint =
         SceneFingerprint(drawn_terrain(scene), scene.relief, scene.layers, threads).digest(threads);
     const double fingerprint_ms = watch.milliseconds();
     std::shared_ptr<PreparedScene> prepared = open_if_made_from(fingerprint, cache, threads, memory);
     if (!prepared) {
         ArchiveWriter::require_writable(cache);
-        prepared = prepare_scene(scene, threads, memory, progress);
+        prepared = prepare_scene(scene, options, memory, progress);
         prepared->fingerprint = SceneFingerprint(fingerprint);
         const Stopwatch saving;
         save_scene(*prepared, cache, threads, Progress(progress, "saving"));

@@ -22,8 +22,9 @@ std::shared_ptr<PreparedScene> open_scene(const std::string& path, unsigned thre
 
 // Opens `cache` where it was saved from this very scene; else prepares the scene and saves it there. A
 // damaged file and one of another version or scene are replaced; any other file is not, with Error(file).
-std::shared_ptr<PreparedScene> prepare_cached(const Scene& scene, const std::string& cache, unsigned threads,
-                                              const MemoryAccount& memory, const ProgressFn& progress);
+std::shared_ptr<PreparedScene> prepare_cached(const Scene& scene, const std::string& cache,
+                                              const RendererOptions& options, const MemoryAccount& memory,
+                                              const ProgressFn& progress);
 
 // What a file holds, from its table and its small sections alone.
 struct SavedScene {

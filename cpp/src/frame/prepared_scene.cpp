@@ -52,8 +52,8 @@ void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, Pr
     prepared.timings.add("terrain", watch.milliseconds());
 }
 
-void prepare_layers(const Scene& scene, unsigned threads, const MemoryAccount& memory, Progress progress,
-                    PreparedScene& prepared) {
+void prepare_layers(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
+                    Progress progress, PreparedScene& prepared) {
     const bool has_ground = scene.terrain.rows() > 1 && scene.terrain.columns() > 1;
     if (scene.layers.empty() || !has_ground)
         return;
@@ -64,13 +64,14 @@ void prepare_layers(const Scene& scene, unsigned threads, const MemoryAccount& m
     input.layers = scene.layers;
     input.bounds = prepared.terrain.bounds();
     input.positions = prepared.positions;
-    input.threads = threads;
+    input.threads = options.threads;
     input.memory = memory;
+    input.bvh = options.bvh;
     PreparedPass pass;
-    pass.technique = "static";
+    pass.technique = options.index == "bvh" ? "static_bvh" : "static";
     pass.prepared = make_technique(pass.technique)->preprocess(input, progress);
+    prepared.timings.add(pass.technique, watch.milliseconds());
     prepared.passes.push_back(std::move(pass));
-    prepared.timings.add("static", watch.milliseconds());
     // Layers without anything to draw cost no pass.
     if (prepared.passes.back().prepared->counts().features == 0)
         prepared.passes.pop_back();
@@ -103,7 +104,7 @@ void validate(const Relief& relief) {
                                           std::to_string(longest_ramp) + " colours");
 }
 
-std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
+std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, const RendererOptions& options,
                                              const MemoryAccount& memory, const ProgressFn& progress) {
     const Stopwatch watch;
     auto prepared = std::make_shared<PreparedScene>();
@@ -113,9 +114,9 @@ std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, unsigned thread
         const Features& features = layer.features;
         prepared->layers.push_back({layer.name, features.kind, {features.rows, features.storage}});
     }
-    prepare_terrain(scene, threads, Progress(progress, "terrain"), *prepared);
-    prepared->fingerprint = SceneFingerprint(prepared->terrain, scene.relief, scene.layers, threads);
-    prepare_layers(scene, threads, memory, Progress(progress, "layers"), *prepared);
+    prepare_terrain(scene, options.threads, Progress(progress, "terrain"), *prepared);
+    prepared->fingerprint = SceneFingerprint(prepared->terrain, scene.relief, scene.layers, options.threads);
+    prepare_layers(scene, options, memory, Progress(progress, "layers"), *prepared);
     prepared->milliseconds = watch.milliseconds();
     return prepared;
 }

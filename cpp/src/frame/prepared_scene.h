@@ -7,6 +7,7 @@
 
 #include "decalgl/core/timing.h"
 #include "decalgl/frame/prepared_layer.h"
+#include "decalgl/frame/renderer.h"
 #include "decalgl/frame/scene.h"
 #include "decalgl/technique/technique.h"
 #include "decalgl/terrain/tiles.h"
@@ -45,7 +46,7 @@ void validate(const Heightfield& terrain);
 void validate(const Relief& relief);
 
 // Validates and prepares. Throws Error(input), Error(memory), Error(cancelled).
-std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, unsigned threads,
+std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, const RendererOptions& options,
                                              const MemoryAccount& memory, const ProgressFn& progress);
 
 }  // namespace decalgl

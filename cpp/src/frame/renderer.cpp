@@ -14,6 +14,12 @@ namespace {
 
 constexpr int largest_side = 1 << 20;
 
+void require_in_range(const char* name, int value, int least, int most) {
+    if (value < least || value > most)
+        throw Error(ErrorKind::input, std::string(name) + " must be from " + std::to_string(least) + " to " +
+                                          std::to_string(most) + ", but it is " + std::to_string(value));
+}
+
 void require_options(const RendererOptions& options) {
     if (options.width < 1 || options.height < 1 || options.width > largest_side ||
         options.height > largest_side)
@@ -24,6 +30,11 @@ void require_options(const RendererOptions& options) {
         throw Error(ErrorKind::input, "terrain_error must be zero or more pixels");
     if (options.rectangle < 0)
         throw Error(ErrorKind::input, "rectangle must be zero or more pixels");
+    if (options.index != "grid" && options.index != "bvh")
+        throw Error(ErrorKind::input, "there is no index '" + options.index + "'; choose grid or bvh");
+    require_in_range("cells", options.bvh.cells, 1, 4096);
+    require_in_range("leaf_capacity", options.bvh.leaf_capacity, 1, 1024);
+    require_in_range("depth_limit", options.bvh.depth_limit, 0, 16);
 }
 
 }  // namespace
@@ -100,9 +111,13 @@ void Renderer::set_picture(int width, int height, Antialias antialias) {
 }
 
 void Renderer::preprocess(const Scene& scene, const ProgressFn& progress, const std::string& cache) {
-    const unsigned threads = state_->options.threads;
-    state_->set_scene(cache.empty() ? prepare_scene(scene, threads, state_->memory, progress)
-                                    : prepare_cached(scene, cache, threads, state_->memory, progress));
+    const RendererOptions& options = state_->options;
+    if (!cache.empty() && options.index != "grid")
+        throw Error(
+            ErrorKind::unsupported,
+            "index '" + options.index + "' is not kept on disk; leave cache out, or use index 'grid'");
+    state_->set_scene(cache.empty() ? prepare_scene(scene, options, state_->memory, progress)
+                                    : prepare_cached(scene, cache, options, state_->memory, progress));
 }
 
 void Renderer::save(const std::string& path) const {

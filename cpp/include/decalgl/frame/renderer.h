@@ -27,6 +27,8 @@ struct RendererOptions {
     std::string backend = "auto";  // "egl", "osmesa"
     unsigned threads = 0;          // for preprocessing; 0: all cores
     int rectangle = 0;             // largest side, in pixels, drawn at once; 0: chosen
+    std::string index = "grid";    // of static layers: "grid", or "bvh" for the published structures
+    BvhOptions bvh;
 };
 
 class Renderer {

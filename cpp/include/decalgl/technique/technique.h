@@ -39,6 +39,20 @@ struct FeatureReference {
     uint32_t feature = 0;
 };
 
+// How the structures of Zechmeister and Thöny are built and drawn; other techniques take no notice.
+enum class SegmentOrder { importance, hilbert };  // in a cell: in draw order, or along a Hilbert curve
+enum class Composition { order, nearest };        // lines: laid over each other, or the nearest one alone
+enum class PassGrouping { layer, kind };  // a pass for each layer, or for neighbouring layers of one kind
+
+struct BvhOptions {
+    int cells = 500;        // along each side of the grid
+    int leaf_capacity = 8;  // edges in a quad-tree's leaf, above its depth limit
+    int depth_limit = 8;
+    SegmentOrder segment_order = SegmentOrder::importance;
+    Composition composition = Composition::order;
+    PassGrouping passes = PassGrouping::layer;
+};
+
 // What a technique is given to prepare: a run of neighbouring layers of one scene.
 struct TechniqueInput {
     Span<const Layer> layers;
@@ -47,6 +61,7 @@ struct TechniqueInput {
     PositionGrid positions;
     unsigned threads = 0;  // 0: all cores
     MemoryAccount memory;
+    BvhOptions bvh;
 };
 
 struct PreparedCounts {

@@ -7,22 +7,11 @@
 // Every sample lies in one cell and is covered by exactly one of two neighbours, so no background shows through
 // a shared border, and joints, caps and crossings need no special case. The samples are a scrambled
 // (0, 5, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
+#include "shared/sample_offsets.glsl"
 #include "technique/static_decals/point.glsl"
 #include "technique/static_decals/levels.glsl"
 
-const int sample_count = 32;
 const uint all_samples = 0xFFFFFFFFu;
-
-const vec2 sample_offsets[sample_count] = vec2[](
-    vec2(-0.453125, 0.140625), vec2(0.078125, -0.421875), vec2(-0.109375, -0.015625), vec2(0.421875, 0.359375),
-    vec2(-0.296875, -0.328125), vec2(0.203125, 0.046875), vec2(-0.234375, 0.484375), vec2(0.296875, -0.140625),
-    vec2(-0.421875, -0.234375), vec2(0.015625, 0.421875), vec2(-0.046875, 0.078125), vec2(0.453125, -0.265625),
-    vec2(-0.359375, 0.296875), vec2(0.140625, -0.109375), vec2(-0.171875, -0.484375), vec2(0.359375, 0.234375),
-    vec2(-0.484375, -0.390625), vec2(0.109375, 0.171875), vec2(-0.078125, 0.328125), vec2(0.390625, -0.046875),
-    vec2(-0.265625, 0.015625), vec2(0.234375, -0.359375), vec2(-0.203125, -0.171875), vec2(0.265625, 0.453125),
-    vec2(-0.390625, 0.390625), vec2(0.046875, -0.203125), vec2(-0.015625, -0.296875), vec2(0.484375, 0.109375),
-    vec2(-0.328125, -0.078125), vec2(0.171875, 0.265625), vec2(-0.140625, 0.203125), vec2(0.328125, -0.453125)
-);
 
 // Pixels larger than this many cells are sampled point by point.
 const float most_cells_across = 1.5;

@@ -1,0 +1,71 @@
+// The decal grid and the trees of its cells, on the GPU (bvh_layout.h, complete_tree.h).
+#include "shared/view_block.h"
+#include "shared/position.glsl"
+#include "technique/static_bvh/bvh_layout.h"
+#include "technique/static_bvh/integers.glsl"
+
+uniform usamplerBuffer bvh_cells;
+uniform isamplerBuffer bvh_nodes;
+uniform isamplerBuffer bvh_vertices;
+uniform usamplerBuffer bvh_styles;  // colour bytes, half width in quanta
+uniform ivec4 grid_box;
+uniform ivec2 grid_size;       // columns, rows
+uniform ivec2 cell_size;       // quanta
+uniform ivec2 first_block;     // the lattice begins at its corner
+uniform int block_shift;       // a block is 2^block_shift quanta
+uniform float quanta_per_metre;
+
+// Beyond every grid, and little enough for sums of 32 bits.
+const float farthest = 1e9;
+
+// The lattice point nearest to a position, moved by some metres.
+ivec2 lattice_point(Position position, vec2 moved) {
+    ivec2 block = position.block - first_block;
+    vec2 offset = position.offset + moved;
+    if (block_shift < 0) {
+        ivec2 rest = block & ((1 << -block_shift) - 1);
+        offset += vec2(rest) * base_offset.z;
+        block >>= -block_shift;
+    } else {
+        block <<= block_shift;
+    }
+    return block + ivec2(clamp(roundEven(offset * quanta_per_metre), -farthest, farthest));
+}
+
+bool holds(ivec4 box, ivec2 point) {
+    return all(greaterThanEqual(point, box.xy)) && all(lessThanEqual(point, box.zw));
+}
+
+// A cell's tree: where its nodes and objects begin, and how many objects there are.
+struct Tree {
+    int first_node;
+    int first_object;
+    uint objects;
+    uint first_leaf;
+};
+
+// Columns and rows are tested apart: as one number, a column past the end would be a cell of the next row.
+Tree tree_at(ivec2 point) {
+    Tree tree = Tree(0, 0, 0u, 1u);
+    if (holds(grid_box, point)) {
+        ivec2 place = (point - grid_box.xy) / cell_size;
+        int cell = place.x + grid_size.x * place.y;
+        uvec2 start = texelFetch(bvh_cells, cell).rg;
+        tree.first_node = int(start.x);
+        tree.first_object = int(start.y);
+        tree.objects = texelFetch(bvh_cells, cell + 1).g - start.y;
+        tree.first_leaf = tree.objects > 1u ? 2u << findMSB(tree.objects - 1u) : 1u;
+    }
+    return tree;
+}
+
+// The node after the subtree of `node`, 0 after the last.
+uint next_right(uint node) {
+    node >>= findLSB(~node);
+    return node == 0u ? 0u : node + 1u;
+}
+
+// Straight alpha.
+vec4 color_of(uint slot) {
+    return unpackUnorm4x8(texelFetch(bvh_styles, int(slot)).r);
+}

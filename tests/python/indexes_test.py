@@ -1,0 +1,272 @@
+"""The published indexes: against the reference on every scene, against the grid pixel by pixel, and their options."""
+
+from __future__ import annotations
+
+import functools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from shapely import box
+
+import decalgl as dg
+import judge
+import scenes
+import shapes
+from decalgl import reference as ref
+from scenes import View
+from small_scenes import MAP, SIZE, draw, flat_scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+    BoolArray = NDArray[np.bool_]
+
+WITH_GROUND = [name for name in scenes.SCENES if name not in ("one_sample", "one_row")]
+# Thousands of features over one metre fill a grid that is laid over just them.
+FEW_CELLS = {"crowd": dg.BvhIndex(cells=16)}
+QUANTA = 1.5
+# Half the widths of `crossing_lines`, metres.
+REACH = np.linspace(1.0, 4.5, 60)
+
+
+@functools.cache
+def renderer(index: str | dg.BvhIndex) -> dg.Renderer:
+    """One renderer for each index; it draws every sample of the terrain."""
+    return dg.Renderer(terrain_error=0.0, index=index)
+
+
+def tolerance(*frames: dg.Frame) -> float:
+    """How far from an edge frames may be wrong, metres."""
+    return QUANTA * max(float(frame.stats.counts["quantum_m"]) for frame in frames)
+
+
+def far_from_edges(view: View, frame: dg.Frame, pixels: BoolArray, metres: float) -> int:
+    distance = ref.edge_distance(view.scene, frame.world[pixels][:, :2])
+    return int((distance > metres).sum())
+
+
+def apart(a: dg.Frame, b: dg.Frame) -> NDArray[np.int64]:
+    """The largest difference (h, w) of a channel, in 1/255."""
+    difference: NDArray[np.int64] = np.abs(a.image.astype(np.int64) - b.image.astype(np.int64)).max(axis=-1)
+    return difference
+
+
+# Against the reference and the grid
+
+
+@pytest.mark.parametrize("name", WITH_GROUND)
+def test_every_scene_is_as_right_as_in_the_grid(name: str) -> None:
+    view = scenes.build(name)
+    grid = judge.draw(renderer("grid"), view)
+    bvh = judge.draw(renderer(FEW_CELLS.get(name, "bvh")), view)
+    assert (bvh.ids >= 0).any()
+    own = judge.judge_ids(view, bvh, judge.own_surface(bvh), tolerance(bvh))
+    assert own.far == 0, own
+    differs = (grid.ids != bvh.ids) | (grid.layers != bvh.layers) | (apart(grid, bvh) > 2)
+    assert far_from_edges(view, bvh, differs, tolerance(grid, bvh)) == 0
+
+
+@pytest.mark.parametrize("name", ["hills", "honolulu_above", "far_coordinates", "nested_holes"])
+@pytest.mark.parametrize(
+    "index",
+    [dg.BvhIndex(passes="kind"), dg.BvhIndex(cells=40, leaf_capacity=2, depth_limit=3)],
+    ids=["kind", "small"],
+)
+def test_other_parameters_draw_the_same(name: str, index: dg.BvhIndex) -> None:
+    view = scenes.build(name)
+    plain, other = judge.draw(renderer("bvh"), view), judge.draw(renderer(index), view)
+    np.testing.assert_array_equal(plain.ids, other.ids)
+    np.testing.assert_array_equal(plain.layers, other.layers)
+    assert apart(plain, other).max() <= 2
+
+
+def test_translucent_layers_in_few_passes_and_in_many() -> None:
+    view = scenes.build("translucent")
+    plain = judge.draw(renderer("bvh"), view)
+    joined = judge.draw(renderer(dg.BvhIndex(passes="kind")), view)
+    assert apart(plain, joined).max() <= 2
+
+
+@pytest.mark.parametrize("name", ["grazing_plain", "map_from_above", "slivers"])
+@pytest.mark.parametrize("kind", ["polygons", "lines"])
+def test_coverage_is_the_mean_of_the_same_samples(name: str, kind: str) -> None:
+    view = scenes.build(name)
+    scene = dg.Scene(view.scene.terrain, view.scene.exaggeration)
+    bounds = np.array(scene.terrain.bounds)
+    if kind == "polygons":
+        cover = shapes.partition(scene.terrain.bounds, 30, 25, seed=3)
+        scene.add_polygons(cover, crs=scene.terrain.crs, color=shapes.tints(30 * 25, 3))
+    else:
+        ends = np.random.default_rng(4).uniform(bounds[:2], bounds[2:], (400, 2))
+        width = float(np.hypot(*(bounds[2:] - bounds[:2]))) / 2000.0
+        scene.add_lines((ends, 2 * np.arange(201)), width=width, width_units="m", color=shapes.tints(200, 4))
+    one = View(scene, view.camera, (160, 90))
+    grid = judge.overlay_of(renderer("grid"), one, "coverage")
+    bvh = judge.overlay_of(renderer(dg.BvhIndex(cells=64)), one, "coverage")
+    # A sample within a quantum of an edge may fall to either side.
+    assert np.abs(grid - bvh).max() <= 2.1 / 32
+    assert (np.abs(grid - bvh).max(axis=-1) > 2.1 / 255).mean() <= 0.001
+
+
+def test_neighbours_let_nothing_through() -> None:
+    view = scenes.build("map_from_above")
+    scene = dg.Scene(view.scene.terrain)
+    x0, y0, x1, y1 = scene.terrain.bounds
+    beyond = (2 * x0 - x1, 2 * y0 - y1, 2 * x1 - x0, 2 * y1 - y0)
+    scene.add_polygons(shapes.partition(beyond, 60, 50, seed=7), crs=scene.terrain.crs, color="olive")
+    for antialias in ("none", "coverage"):
+        one = View(scene, view.camera, (192, 108))
+        frame = judge.draw(renderer("bvh"), one)
+        inner = np.isfinite(frame.depth) & (judge.rim_distance(one, frame) > 2.0)
+        assert judge.overlay_of(renderer("bvh"), one, antialias)[inner][:, 3].min() == 1.0
+
+
+def test_pick_lists_what_lies_there() -> None:
+    view = scenes.build("hills")
+    grid, bvh = judge.draw(renderer("grid"), view), judge.draw(renderer("bvh"), view)
+    y, x = np.nonzero(np.isfinite(bvh.depth))
+    for i in np.random.default_rng(2).choice(len(x), 100):
+        at = int(x[i]), int(y[i])
+        distance = ref.edge_distance(view.scene, bvh.world[at[1], at[0]][None, :2])
+        if distance[0] > tolerance(grid, bvh):
+            assert [(one.layer.index, one.row) for one in bvh.pick(*at)] == [
+                (one.layer.index, one.row) for one in grid.pick(*at)
+            ]
+
+
+# Thöny's composition
+
+
+def crossing_lines() -> tuple[dg.Scene, FloatArray]:
+    """Sixty wide segments over 100 m of level ground: the scene and their ends (60, 2, 2)."""
+    ends = np.random.default_rng(8).uniform(0.0, 100.0, (60, 2, 2))
+    ends[7] = ends[3, ::-1]  # two lines over each other, one of them backwards
+    scene = flat_scene()
+    scene.add_lines(
+        (ends.reshape(-1, 2), 2 * np.arange(61)), width=2 * REACH, width_units="m", color=shapes.tints(60, 9)
+    )
+    return scene, ends
+
+
+def distances(ends: FloatArray, points: FloatArray) -> FloatArray:
+    """From points (p, 2) to segments (s, 2, 2), as (p, s)."""
+    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    apart = points[:, None] - start
+    t = np.clip((apart * along).sum(axis=-1) / (along**2).sum(axis=-1), 0.0, 1.0)
+    distance: FloatArray = np.linalg.norm(apart - t[..., None] * along, axis=-1)
+    return distance
+
+
+@pytest.mark.parametrize("index", ["thoeny", dg.BvhIndex(composition="nearest")], ids=["thoeny", "sorted"])
+def test_the_nearest_line_is_seen(index: str | dg.BvhIndex) -> None:
+    scene, ends = crossing_lines()
+    frame = draw(scene, index=index)
+    distance = distances(ends, frame.world[..., :2].reshape(-1, 2))
+    distance[:, 3] = distance[:, 7]  # to the last digit
+    reached = np.where(distance <= REACH, distance, np.inf)
+    # Of equally near ones the topmost, which comes last.
+    nearest = 59 - reached[:, ::-1].argmin(axis=1)
+    expected = np.where(np.isfinite(reached.min(axis=1)), nearest, -1)
+    # The two lines over each other count as one.
+    ordered = np.sort(np.delete(distance, 3, axis=1), axis=1)
+    unsure = (np.abs(distance - REACH) < 1e-4).any(axis=1) | (ordered[:, 1] - ordered[:, 0] < 1e-4)
+    assert unsure.mean() < 0.05
+    assert (frame.ids.ravel() == expected)[~unsure].all()
+    assert (expected == 7).any()
+    assert not (frame.ids == 3).any()
+    colors = scene.layers[0].colors
+    shown = frame.image.reshape(-1, 4)[:, :3].astype(int)
+    sure = ~unsure & (expected >= 0)
+    assert np.abs(shown[sure] - colors[expected[sure], :3]).max() <= 1
+
+
+def test_by_priority_the_topmost_line_is_seen_in_any_order_of_segments() -> None:
+    scene, ends = crossing_lines()
+    frame = draw(scene, index=dg.BvhIndex(segment_order="hilbert"))
+    distance = distances(ends, frame.world[..., :2].reshape(-1, 2))
+    covers = distance <= REACH
+    expected = np.where(covers.any(axis=1), 59 - covers[:, ::-1].argmax(axis=1), -1)
+    unsure = (np.abs(distance - REACH) < 1e-4).any(axis=1)
+    assert (frame.ids.ravel() == expected)[~unsure].all()
+
+
+def test_translucent_lines_along_a_curve() -> None:
+    scene = flat_scene()
+    line = shapes.walk(np.random.default_rng(5), np.array([50.0, 50.0]), 5.0, 20)
+    scene.add_lines((line, [0, len(line)]), width=3, width_units="m", alpha=0.5)
+    with pytest.raises(dg.UnsupportedError, match=r"translucent lines.*composition=\"nearest\""):
+        draw(scene, index=dg.BvhIndex(segment_order="hilbert"))
+    assert (draw(scene, index="thoeny").ids == 0).any()
+
+
+# Options
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"cells": 0}, "cells must be a whole number from 1 to 4096"),
+        ({"cells": 4097}, "cells must be"),
+        ({"cells": 2.5}, "cells must be"),
+        ({"leaf_capacity": 0}, "leaf_capacity must be a whole number from 1 to 1024"),
+        ({"depth_limit": 17}, "depth_limit must be a whole number from 0 to 16"),
+        ({"segment_order": "random"}, "segment_order must be 'importance' or 'hilbert'"),
+        ({"composition": "last"}, "composition must be 'order' or 'nearest'"),
+        ({"passes": 3}, "passes must be 'layer' or 'kind'"),
+    ],
+)
+def test_wrong_parameters_are_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(dg.InputError, match=message):
+        dg.BvhIndex(**options)
+
+
+@pytest.mark.parametrize("index", ["tree", None, 3])
+def test_an_unknown_index_is_refused(index: Any) -> None:
+    with pytest.raises(dg.InputError, match=r"There is no index=.*choose 'grid', 'bvh', 'thoeny'"):
+        dg.Renderer(index=index)
+
+
+def test_an_index_that_cannot_be_held_is_refused() -> None:
+    scene = scenes.build("crowd").scene
+    with pytest.raises(dg.MemoryLimitError, match="use fewer cells"):
+        dg.Renderer(index=dg.BvhIndex(cells=4096)).preprocess(scene)
+    with pytest.raises(dg.MemoryLimitError, match="memory_limit"):
+        dg.Renderer(index=FEW_CELLS["crowd"], memory_limit=1 << 20).preprocess(scene)
+
+
+def test_only_what_is_needed_is_drawn() -> None:
+    scene = flat_scene()
+    frame = draw(scene, index="bvh")
+    assert not any(one["name"] == "static_bvh" for one in frame.stats.passes)
+    scene.add_polygons([box(20, 20, 60, 60)], color="teal")
+    frame = draw(scene, index="bvh")
+    assert [one["name"] for one in frame.stats.passes].count("static_bvh") == 1
+    assert [name for name in frame.stats.variants if "static" in name] == ["static_bvh[RINGS]"]
+    assert "static_bvh: segments" not in frame.stats.objects
+
+
+def test_a_scene_keeps_its_renderer_while_the_index_stays() -> None:
+    scene, _ = crossing_lines()
+    first = draw(scene, index=dg.BvhIndex(cells=30))
+    again = draw(scene, index=dg.BvhIndex(cells=30))
+    assert first.stats.stages["preprocess"] == again.stats.stages["preprocess"]
+    assert draw(scene, index="grid").stats.stages["preprocess"] != first.stats.stages["preprocess"]
+    np.testing.assert_array_equal(first.ids, again.ids)
+
+
+def test_a_picture_in_tiles_is_the_same() -> None:
+    scene, _ = crossing_lines()
+    for antialias in ("none", "coverage"):
+        whole = draw(scene, index="bvh", antialias=antialias)
+        tiled = draw(scene, index="bvh", antialias=antialias, tile=37)
+        np.testing.assert_array_equal(whole.image, tiled.image)
+        np.testing.assert_array_equal(whole.ids, tiled.ids)
+
+
+def test_long_walks_are_reported() -> None:
+    scene, _ = crossing_lines()
+    one = dg.Renderer(size=SIZE, antialias="none", index=dg.BvhIndex(cells=1))
+    one.preprocess(scene)
+    assert 60 < one.update(MAP)["longest_walk"] <= 2 * 64
