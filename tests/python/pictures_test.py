@@ -206,6 +206,32 @@ def test_the_demo_has_no_hairlines() -> None:
         assert (outside | (distance <= 1.5 * reach)).all()
 
 
+@pytest.mark.parametrize(("kind", "rms"), [("polygons", 0.015), ("lines", 0.03), ("translucent", 0.015)])
+def test_far_pictures_keep_their_coverage(kind: str, rms: float) -> None:
+    """From levels of detail, against the mean of 32 x 32 pixels in the place of each."""
+    scene = dg.Scene(dg.Terrain.flat((0, 0, 3000, 3000)), relief=dg.Relief(on_layers=0.0))
+    if kind == "lines":
+        ends = np.random.default_rng(6).uniform(0.0, 3000.0, (6000, 2))
+        lines = (ends, 2 * np.arange(3001))
+        scene.add_lines(lines, width=1.5, width_units="m", color=shapes.tints(3000, 7))
+    else:
+        cover = shapes.partition((0, 0, 3000, 3000), 80, 80, seed=4)
+        scene.add_polygons(cover, color=shapes.tints(6400, 5), alpha=0.4 if kind == "translucent" else 1.0)
+    side, finer = 160, 32
+    camera = dg.Camera.top_down((100, 100, 2900, 2900))
+    fine = judge.overlay_of(renderer(), View(scene, camera, (side * finer, side * finer)), "none")
+    expected = fine.reshape(side, finer, side, finer, 4).mean(axis=(1, 3))
+    got = judge.overlay_of(renderer(), View(scene, camera, (side, side)), "coverage")
+    frame = judge.draw(renderer(), View(scene, camera, (side, side)))
+    assert frame.stats.counts["quantum_m"] * 2**17 / 16 < 2800 / side / 3
+    error = np.abs(got - expected).max(axis=-1)
+    partial = np.ptp(fine.reshape(side, finer, side, finer, 4), axis=(1, 3)).max(axis=-1) > 0.0
+    assert partial.mean() > 0.2
+    assert np.sqrt((error[partial] ** 2).mean()) <= rms
+    assert error.max() <= 6.0 * rms
+    assert abs((got - expected)[..., 3].mean()) <= 0.002
+
+
 # Levels of detail of the terrain
 
 
