@@ -24,12 +24,14 @@ layout(location = 0) out vec4 color;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    LatticePosition position = on_lattice(unpack_position(texelFetch(position_texture, pixel, 0)));
+    Position seen = unpack_position(texelFetch(position_texture, pixel, 0));
+    LatticePosition position = on_lattice(seen);
 #ifdef IDS
     id = walk_at(position).found + 1u;  // no slot, plus one, is 0
 #elif defined(COVERAGE)
     vec4 surface = texelFetch(surface_texture, pixel, 0);
-    mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
+    // Sky has no surface: a pixel of no size, outside every grid, is done with at once.
+    mat2 foot = is_sky(seen) ? mat2(0.0) : footprint(pixel_from_centre(), surface.xy, surface.z);
     color = composite_area(position, foot * quanta_per_metre);
 #else
     color = color_at(position);

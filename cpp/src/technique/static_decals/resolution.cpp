@@ -16,9 +16,9 @@ constexpr int32_t finest = 256;
 constexpr double edges_per_bucket = 100.0;
 constexpr size_t samples_per_layer = 4096;
 
-// What an index may hold: some records a segment, and a fixed number for the cells inside large features.
-constexpr double records_per_segment = 8.0;
-constexpr double records_besides = 1 << 22;
+// What an index may hold: some words a segment, and a fixed number for the cells inside large features.
+constexpr double words_per_segment = 8.0;
+constexpr double words_besides = 1 << 22;
 
 // A feature that stands for `weight` of them.
 struct Sample {
@@ -56,14 +56,13 @@ void add_samples(const Layer& layer, const Bounds& bounds, std::vector<Sample>& 
     }
 }
 
-double estimate_records(const std::vector<Sample>& samples, double cell_size) {
-    double records = 0.0;
+double estimate_words(const std::vector<Sample>& samples, double cell_size) {
+    double words = 0.0;
     for (const Sample& sample : samples) {
         const double across = 1.0 + sample.width / cell_size;
-        records +=
-            sample.weight * (sample.vertices * across * across + sample.area / (cell_size * cell_size));
+        words += sample.weight * (sample.vertices * across * across + sample.area / (cell_size * cell_size));
     }
-    return records;
+    return words;
 }
 
 }  // namespace
@@ -81,9 +80,9 @@ int32_t choose_resolution(const TechniqueInput& input) {
 
     const double extent =
         std::max(input.bounds.max_x - input.bounds.min_x, input.bounds.max_y - input.bounds.min_y);
-    const double allowed = records_per_segment * segments + records_besides;
+    const double allowed = words_per_segment * segments + words_besides;
     const auto coarsest_cell = [&] { return extent / resolution / (1 << COARSEST_LEVEL); };
-    while (resolution > coarsest && estimate_records(samples, coarsest_cell()) > allowed)
+    while (resolution > coarsest && estimate_words(samples, coarsest_cell()) > allowed)
         resolution /= 2;
     return resolution;
 }
