@@ -144,12 +144,7 @@ void count_vertices(const Source& source, bool is_ring, LatticePart& part) {
 // The vertices from `begin` to `end`; a part of pairs is written by the range that it begins in.
 void write_vertices(const std::vector<LatticePart>& parts, const std::vector<Source>& sources, size_t begin,
                     size_t end, LatticePoint* vertices) {
-    const auto starts_after = [](size_t vertex, const LatticePart& part) {
-        return vertex < part.first_vertex;
-    };
-    auto at = static_cast<size_t>(std::upper_bound(parts.begin(), parts.end(), begin, starts_after) -
-                                  parts.begin());
-    for (at = at > 0 ? at - 1 : 0; at < parts.size() && parts[at].first_vertex < end; ++at) {
+    for (size_t at = part_of_vertex(parts, begin); at < parts.size() && parts[at].first_vertex < end; ++at) {
         const LatticePart& part = parts[at];
         if (part.is_pairs) {
             LatticePoint* to = vertices + part.first_vertex;
@@ -168,6 +163,14 @@ void write_vertices(const std::vector<LatticePart>& parts, const std::vector<Sou
 }
 
 }  // namespace
+
+size_t part_of_vertex(const std::vector<LatticePart>& parts, size_t vertex) {
+    const auto starts_after = [](size_t wanted, const LatticePart& part) {
+        return wanted < part.first_vertex;
+    };
+    const auto after = std::upper_bound(parts.begin(), parts.end(), vertex, starts_after);
+    return after == parts.begin() ? 0 : static_cast<size_t>(after - parts.begin()) - 1;
+}
 
 LatticeParts to_lattice(const TechniqueInput& input, Span<const FeatureReference> slots,
                         const Lattice& lattice, MemoryCharge& charge, MemoryCharge& working) {

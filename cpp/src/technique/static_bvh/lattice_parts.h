@@ -27,6 +27,9 @@ struct LatticePart {
     uint32_t vertex_count;
 };
 
+// The part that a vertex lies in; the first one for a vertex before all parts.
+size_t part_of_vertex(const std::vector<LatticePart>& parts, size_t vertex);
+
 struct LatticeParts {
     LargeArray<LatticePoint> vertices;
     std::vector<LatticePart> parts;

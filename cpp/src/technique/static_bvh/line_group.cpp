@@ -22,12 +22,7 @@ Segment segment_of(uint32_t record, const LargeArray<LatticePoint>& vertices) {
 // Calls on_segment(part, record) for the segments that begin at the vertices from `begin` to `end`.
 template <typename OnSegment>
 void for_each_segment(const std::vector<LatticePart>& parts, size_t begin, size_t end, OnSegment on_segment) {
-    const auto starts_after = [](size_t vertex, const LatticePart& part) {
-        return vertex < part.first_vertex;
-    };
-    auto at = static_cast<size_t>(std::upper_bound(parts.begin(), parts.end(), begin, starts_after) -
-                                  parts.begin());
-    for (at = at > 0 ? at - 1 : 0; at < parts.size() && parts[at].first_vertex < end; ++at) {
+    for (size_t at = part_of_vertex(parts, begin); at < parts.size() && parts[at].first_vertex < end; ++at) {
         const LatticePart& part = parts[at];
         const uint32_t step = part.is_pairs ? 2 : 1;
         const uint32_t last = part.first_vertex + part.vertex_count;
