@@ -5,6 +5,7 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "The C++ core of decalgl. Use the classes of the package decalgl instead.";
     module.attr("__version__") = DECALGL_VERSION;
     decalgl::bindings::register_errors(module);
+    decalgl::bindings::register_styles(module);
     decalgl::bindings::register_scene(module);
     decalgl::bindings::register_renderer(module);
     decalgl::bindings::register_doctor(module);

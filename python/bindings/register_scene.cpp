@@ -50,8 +50,8 @@ Heightfield make_terrain(const Array<float>& heights, double x0, double y0, doub
 
 void add_layer(Scene& scene, const std::string& name, bool polygons, const Array<double>& coordinates,
                const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets,
-               const Array<int64_t>& rows, const Array<uint8_t>& colors, const Array<double>& widths,
-               const Array<int64_t>& draw_order) {
+               const Array<int64_t>& rows, const Fill& fill, const Stroke& stroke, const Stroke& casing,
+               OutlineMode outline_mode, OutlineOrder outline_order, const Array<int64_t>& draw_order) {
     if (coordinates.ndim() != 2 || coordinates.shape(1) != 2)
         throw Error(ErrorKind::input, "layer '" + name + "': coordinates must have the shape (vertices, 2)");
     if (std::any_of(rows.data(), rows.data() + rows.size(), [](int64_t row) { return row < 0; }))
@@ -65,8 +65,11 @@ void add_layer(Scene& scene, const std::string& name, bool polygons, const Array
     layer.features.feature_offsets = span_of(arrays->feature_offsets);
     layer.features.rows = span_of(arrays->rows);
     layer.features.storage = arrays;
-    layer.colors = vector_of(colors);
-    layer.widths = vector_of(widths);
+    layer.fill = fill;
+    layer.stroke = stroke;
+    layer.casing = casing;
+    layer.outline_mode = outline_mode;
+    layer.outline_order = outline_order;
     layer.draw_order = vector_of(draw_order);
     validate(layer);
     scene.layers.push_back(std::move(layer));
@@ -98,8 +101,9 @@ void register_scene(py::module_& module) {
              py::arg("heights"), py::arg("x0"), py::arg("y0"), py::arg("dx"), py::arg("dy"),
              py::arg("exaggeration"), py::arg("relief"))
         .def("add_layer", &add_layer, py::arg("name"), py::arg("polygons"), py::arg("coordinates"),
-             py::arg("part_offsets"), py::arg("feature_offsets"), py::arg("rows"), py::arg("colors"),
-             py::arg("widths"), py::arg("draw_order"));
+             py::arg("part_offsets"), py::arg("feature_offsets"), py::arg("rows"), py::arg("fill"),
+             py::arg("stroke"), py::arg("casing"), py::arg("outline_mode"), py::arg("outline_order"),
+             py::arg("draw_order"));
 }
 
 }  // namespace decalgl::bindings

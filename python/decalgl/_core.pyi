@@ -19,6 +19,56 @@ class Relief:
     on_layers: float
     def __init__(self) -> None: ...
 
+class Corner:
+    __members__: dict[str, Corner]
+
+class Cap:
+    __members__: dict[str, Cap]
+
+class SlopeCorrection:
+    __members__: dict[str, SlopeCorrection]
+
+class OutlineMode:
+    __members__: dict[str, OutlineMode]
+
+class OutlineOrder:
+    __members__: dict[str, OutlineOrder]
+
+class PatternMark:
+    def __init__(self, begin: float, end: float, begin_width: float, end_width: float) -> None: ...
+
+class LinePattern:
+    def __init__(self, period: float, offset: float, marks: Sequence[PatternMark]) -> None: ...
+
+class ColorBand:
+    def __init__(self, reach: float, color: Sequence[int]) -> None: ...
+
+class StrokeStyle:
+    corner: Corner
+    cap: Cap
+    miter_limit: float
+    slope_correction: SlopeCorrection
+    pattern: LinePattern
+    bands: Sequence[ColorBand]
+    def __init__(self) -> None: ...
+
+class Stroke:
+    colors: NDArray[np.uint8]
+    widths: NDArray[np.float64]
+    styles: Sequence[StrokeStyle]
+    style_of: NDArray[np.uint32]
+    widest: float
+    def __init__(self) -> None: ...
+
+class Hatch:
+    def __init__(self, spacing: float, width: float, angle: float, crossed: bool) -> None: ...
+
+class Fill:
+    colors: NDArray[np.uint8]
+    hatches: Sequence[Hatch]
+    hatch_of: NDArray[np.uint32]
+    def __init__(self) -> None: ...
+
 class Scene:
     def __init__(
         self,
@@ -38,8 +88,11 @@ class Scene:
         part_offsets: NDArray[np.int64],
         feature_offsets: NDArray[np.int64],
         rows: NDArray[np.int64],
-        colors: NDArray[np.uint8],
-        widths: NDArray[np.float64],
+        fill: Fill,
+        stroke: Stroke,
+        casing: Stroke,
+        outline_mode: OutlineMode,
+        outline_order: OutlineOrder,
         draw_order: NDArray[np.int64],
     ) -> None: ...
 

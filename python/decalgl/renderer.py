@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from . import _core
-from ._colors import colormap, parse_color
+from ._colors import parse_color
+from ._core_scene import core_scene
 from ._raster import check_memory
 from .camera import checked_size
 from .errors import CancelledError, InputError, UnsupportedError, warn
@@ -134,7 +135,7 @@ class Renderer:
             return
         stop = _ExceptionKeeper(progress) if progress is not None else None
         try:
-            self._core.preprocess(_core_scene(scene), stop, cache_name)
+            self._core.preprocess(core_scene(scene), stop, cache_name)
         except CancelledError:
             if stop is not None and stop.error is not None:
                 raise stop.error from None
@@ -261,48 +262,6 @@ def _file_name(path: Any) -> bytes:
     if not name:
         raise InputError("The path is empty. Name a file.")
     return name
-
-
-def _core_scene(scene: Scene) -> _core.Scene:
-    terrain = scene.terrain
-    result = _core.Scene(
-        heights=terrain.z,
-        x0=terrain.x0,
-        y0=terrain.y0,
-        dx=terrain.dx,
-        dy=terrain.dy,
-        exaggeration=scene.exaggeration,
-        relief=_core_relief(scene),
-    )
-    for layer in scene.layers:
-        polygons = layer.features.kind == "polygons"
-        result.add_layer(
-            name=layer.name,
-            polygons=polygons,
-            coordinates=layer.features.coords,
-            part_offsets=layer.features.part_offsets,
-            feature_offsets=layer.features.feature_offsets,
-            rows=layer.features.rows,
-            colors=layer.colors,
-            widths=np.zeros(0) if polygons else layer.widths,
-            draw_order=layer.draw_order,
-        )
-    return result
-
-
-def _core_relief(scene: Scene) -> _core.Relief:
-    relief = _core.Relief()
-    given = scene.relief
-    relief.color = [round(255 * channel) for channel in parse_color(given.color)[:3]]
-    relief.azimuth, relief.altitude = given.azimuth, given.altitude
-    relief.strength, relief.on_layers = given.strength, given.on_layers
-    if given.cmap is not None:
-        lowest = float(np.nanmin(scene.heights)) if given.vmin is None else given.vmin
-        highest = float(np.nanmax(scene.heights)) if given.vmax is None else given.vmax
-        ramp = colormap(given.cmap)(np.linspace(0.0, 1.0, 256))
-        relief.ramp = np.rint(255 * ramp[:, :3]).astype(np.uint8).ravel().tolist()
-        relief.lowest, relief.highest = lowest, max(highest, lowest + 1e-3)
-    return relief
 
 
 def drawn_background(background: Any) -> tuple[Rgba, Rgba]:

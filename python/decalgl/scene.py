@@ -12,6 +12,7 @@ from .camera import Camera
 from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, UnsupportedError, close_matches
 from .features import LARGEST_COORDINATE, FeatureTable, Kind, read_features
+from .strokes import Fill, Stroke
 from .terrain import Terrain
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ._sources import Attributes
     from .frame import Frame
     from .renderer import Renderer
+    from .strokes import OutlineMode, OutlineOrder
 
 Technique = Literal["auto", "static"]
 PLANNED_TECHNIQUES = ("dynamic",)
@@ -78,8 +80,11 @@ class Layer:
     """One layer of a scene, ready to draw.
 
     features: the geometry on the scene's plane.
-    colors: uint8 (features, 4), sRGB with straight alpha; alpha 0 is not drawn and has no id.
-    widths: float64 (features), metres on the map plane; zeros for polygons.
+    fill: of polygons; None for lines.
+    stroke: of lines, or the outlines of polygons; None for polygons without.
+    casing: of lines, under the strokes of all of them; None without.
+    outline_mode: which side of a polygon's border its outline lies on. outline_order: over all fills of the layer,
+        or each over its own feature's.
     draw_order: int64 (features), features from bottom to top.
     coloring: how the colours came about, for legends.
     """
@@ -87,19 +92,35 @@ class Layer:
     name: str
     index: int
     features: FeatureTable
-    colors: NDArray[np.uint8] = field(repr=False)
-    widths: NDArray[np.float64] = field(repr=False)
     draw_order: NDArray[np.int64] = field(repr=False)
     coloring: Coloring = field(repr=False)
+    fill: Fill | None = field(default=None, repr=False)
+    stroke: Stroke | None = field(default=None, repr=False)
+    casing: Stroke | None = field(default=None, repr=False)
+    outline_mode: OutlineMode = "normal"
+    outline_order: OutlineOrder = "layer"
 
     def __post_init__(self) -> None:
-        for array in (self.colors, self.widths, self.draw_order):
-            array.flags.writeable = False
+        self.draw_order.flags.writeable = False
 
     @property
     def kind(self) -> Kind:
         """What its features are: "polygons" or "lines"."""
         return self.features.kind
+
+    @property
+    def colors(self) -> NDArray[np.uint8]:
+        """uint8 (features, 4), of the fills of polygons or the strokes of lines; alpha 0 is not drawn."""
+        own = self.fill or self.stroke
+        assert own is not None
+        return own.colors
+
+    @property
+    def widths(self) -> NDArray[np.float64]:
+        """float64 (features), metres on the map plane of the strokes of lines; zeros for polygons."""
+        if self.kind == "polygons" or self.stroke is None:
+            return np.zeros(len(self.features))
+        return self.stroke.widths
 
     @property
     def rows(self) -> NDArray[np.int64]:
@@ -316,9 +337,18 @@ class Scene:
             if repr(name) in str(error):
                 raise
             raise StyleError(f"Layer {name!r}: {error}") from error
-        widths = np.zeros(len(table)) if kind == "polygons" else self._widths(width, table, attributes)
         draw_order = _draw_order(order, table, attributes)
-        layer = Layer(name, len(self._layers), table, coloring.colors, widths, draw_order, coloring)
+        layer = Layer(
+            name,
+            len(self._layers),
+            table,
+            draw_order,
+            coloring,
+            fill=Fill(coloring.colors) if kind == "polygons" else None,
+            stroke=None
+            if kind == "polygons"
+            else Stroke(coloring.colors, self._widths(width, table, attributes)),
+        )
         self._layers.append(layer)
         return layer
 

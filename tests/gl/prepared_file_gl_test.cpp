@@ -18,12 +18,12 @@ Scene sample_scene() {
     area.name = "area";
     area.features =
         Features::own(FeatureKind::polygons, {10, 10, 90, 10, 90, 90, 10, 90}, {0, 4}, {0, 1}, {3});
-    area.colors = {200, 30, 30, 128};
+    area.fill.colors = {200, 30, 30, 128};
     Layer way;
     way.name = "way";
     way.features = Features::own(FeatureKind::lines, {0, 0, 100, 100}, {0, 2}, {0, 1}, {8});
-    way.colors = {30, 30, 200, 255};
-    way.widths = {9.0};
+    way.stroke.colors = {30, 30, 200, 255};
+    way.stroke.widths = {9.0};
     scene.layers = {area, way};
     return scene;
 }

@@ -36,12 +36,12 @@ Scene sample_scene() {
     areas.features = Features::own(FeatureKind::polygons,
                                    {1010, 2900, 1120, 2900, 1060, 2980, 1000, 2870, 1130, 2870, 1130, 2990},
                                    {0, 3, 6}, {0, 1, 2}, {5, 9});
-    areas.colors = {200, 30, 30, 255, 10, 20, 30, 100};
+    areas.fill.colors = {200, 30, 30, 255, 10, 20, 30, 100};
     Layer ways;
     ways.name = "ways";
     ways.features = Features::own(FeatureKind::lines, {1000, 2862, 1138, 3000, 1100, 2870}, {0, 3}, {0, 1});
-    ways.colors = {0, 0, 0, 255};
-    ways.widths = {6.0};
+    ways.stroke.colors = {0, 0, 0, 255};
+    ways.stroke.widths = {6.0};
     scene.layers = {areas, ways};
     return scene;
 }
@@ -133,8 +133,8 @@ TEST_CASE("a cache is opened for the scene that it was made from alone") {
         [](Scene& s) { s.relief.ramp[1] = 1; },
         [](Scene& s) { s.relief.color[2] = 1; },
         [](Scene& s) { s.layers[0].name = "fields"; },
-        [](Scene& s) { s.layers[0].colors[6] = 31; },
-        [](Scene& s) { s.layers[1].widths[0] = 6.5; },
+        [](Scene& s) { s.layers[0].fill.colors[6] = 31; },
+        [](Scene& s) { s.layers[1].stroke.widths[0] = 6.5; },
         [](Scene& s) {
             s.layers[0].draw_order = {1, 0};
         },

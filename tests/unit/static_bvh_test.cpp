@@ -38,11 +38,20 @@ Features features_of(FeatureKind kind, const std::vector<Feature>& all) {
 }
 
 Layer polygons(const std::vector<Feature>& all) {
-    return {"polygons", features_of(FeatureKind::polygons, all), {200, 100, 50, 255}, {}, {}};
+    Layer layer;
+    layer.name = "polygons";
+    layer.features = features_of(FeatureKind::polygons, all);
+    layer.fill.colors = {200, 100, 50, 255};
+    return layer;
 }
 
 Layer lines(const std::vector<Feature>& all, std::vector<double> widths) {
-    return {"lines", features_of(FeatureKind::lines, all), {20, 30, 40, 255}, std::move(widths), {}};
+    Layer layer;
+    layer.name = "lines";
+    layer.features = features_of(FeatureKind::lines, all);
+    layer.stroke.colors = {20, 30, 40, 255};
+    layer.stroke.widths = std::move(widths);
+    return layer;
 }
 
 TechniqueInput input_of(const std::vector<Layer>& layers, const BvhOptions& options) {
@@ -476,7 +485,7 @@ TEST_CASE("a BVH index is the same bytes on any number of threads", "[bvh]") {
 TEST_CASE("groups follow the passes asked for, and slots the draw order", "[bvh]") {
     const Feature square{{1100, 2100, 1200, 2100, 1200, 2200, 1100, 2200}};
     Layer layer = polygons({square, square, square});
-    layer.colors = {1, 2, 3, 255, 4, 5, 6, 0, 7, 8, 9, 128};
+    layer.fill.colors = {1, 2, 3, 255, 4, 5, 6, 0, 7, 8, 9, 128};
     layer.draw_order = {2, 1, 0};
     const std::vector<Layer> layers{layer, polygons({square}), lines({{{1100, 2150, 1200, 2150}}}, {5.0})};
     BvhOptions options;
@@ -505,7 +514,7 @@ TEST_CASE("a cancelled, an excessive and an impossible BVH index", "[bvh]") {
     CHECK(kind_of_build({polygons(rings)}, {}, false) == ErrorKind::cancelled);
     CHECK(kind_of_build({polygons(wide)}, with_cells(4096), true) == ErrorKind::memory);
     Layer glass = lines({{{1100, 2100, 1200, 2200}}}, {5.0});
-    glass.colors = {1, 2, 3, 128};
+    glass.stroke.colors = {1, 2, 3, 128};
     BvhOptions options;
     options.segment_order = SegmentOrder::hilbert;
     CHECK(kind_of_build({glass}, options, true) == ErrorKind::unsupported);

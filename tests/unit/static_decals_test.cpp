@@ -30,11 +30,20 @@ Features features_of(FeatureKind kind, const std::vector<Ring>& parts) {
 }
 
 Layer polygons(const std::vector<Ring>& rings) {
-    return {"polygons", features_of(FeatureKind::polygons, rings), {200, 100, 50, 255}, {}, {}};
+    Layer layer;
+    layer.name = "polygons";
+    layer.features = features_of(FeatureKind::polygons, rings);
+    layer.fill.colors = {200, 100, 50, 255};
+    return layer;
 }
 
 Layer lines(const std::vector<Ring>& parts, std::vector<double> widths) {
-    return {"lines", features_of(FeatureKind::lines, parts), {20, 30, 40, 255}, std::move(widths), {}};
+    Layer layer;
+    layer.name = "lines";
+    layer.features = features_of(FeatureKind::lines, parts);
+    layer.stroke.colors = {20, 30, 40, 255};
+    layer.stroke.widths = std::move(widths);
+    return layer;
 }
 
 std::unique_ptr<PreparedDecals> build(const std::vector<Layer>& layers, unsigned threads = 0) {
@@ -320,7 +329,7 @@ TEST_CASE("dense places have finer cells", "[static]") {
 TEST_CASE("draw order, transparent features and rows", "[static]") {
     const Ring square{1100, 2100, 1200, 2100, 1200, 2200, 1100, 2200};
     Layer layer = polygons({square, square, square});
-    layer.colors = {1, 2, 3, 255, 4, 5, 6, 0, 7, 8, 9, 128};
+    layer.fill.colors = {1, 2, 3, 255, 4, 5, 6, 0, 7, 8, 9, 128};
     layer.draw_order = {2, 1, 0};
     const auto decals = build({layer});
     const auto found = decals->query(1150, 2150);

@@ -89,7 +89,7 @@ Layer cover_layer(const PolygonTable& cover) {
         Features::own(FeatureKind::polygons, cover.coordinates, cover.part_offsets, cover.feature_offsets);
     for (std::size_t feature = 0; feature < cover.values.size(); ++feature) {
         const Color color = opaque(material_named(cover.values[feature], feature).color);
-        layer.colors.insert(layer.colors.end(), color.begin(), color.end());
+        layer.fill.colors.insert(layer.fill.colors.end(), color.begin(), color.end());
     }
     return layer;
 }
@@ -117,7 +117,7 @@ Layer network_layer(const PolygonTable& cover) {
         feature_offsets.push_back(static_cast<std::int64_t>(part_offsets.size()) - 1);
         rows.push_back(static_cast<std::int64_t>(feature));
         const Color color = opaque(material.color);
-        layer.colors.insert(layer.colors.end(), color.begin(), color.end());
+        layer.fill.colors.insert(layer.fill.colors.end(), color.begin(), color.end());
     }
     layer.features = Features::own(FeatureKind::polygons, std::move(coordinates), std::move(part_offsets),
                                    std::move(feature_offsets), std::move(rows));
@@ -135,8 +135,8 @@ Layer isoline_layer(const std::string& name, Polylines lines, std::uint8_t alpha
     layer.features = Features::own(FeatureKind::lines, std::move(lines.coordinates), std::move(lines.offsets),
                                    std::move(features));
     const Color color = opaque(isoline_color);
-    layer.colors = {color[0], color[1], color[2], alpha};
-    layer.widths = {width};
+    layer.stroke.colors = {color[0], color[1], color[2], alpha};
+    layer.stroke.widths = {width};
     return layer;
 }
 

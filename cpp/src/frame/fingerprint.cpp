@@ -10,6 +10,38 @@ void add(const std::vector<T>& values, DigestBuilder& builder) {
     builder.add(Span<const T>(values));
 }
 
+void add(const Stroke& stroke, DigestBuilder& builder) {
+    add(stroke.colors, builder);
+    add(stroke.widths, builder);
+    add(stroke.style_of, builder);
+    builder.add_value(stroke.widest);
+    for (const StrokeStyle& style : stroke.styles) {
+        builder.add_value(style.corner);
+        builder.add_value(style.cap);
+        builder.add_value(style.miter_limit);
+        builder.add_value(style.slope_correction);
+        builder.add_value(style.pattern.period);
+        builder.add_value(style.pattern.offset);
+        for (const PatternMark& mark : style.pattern.marks)
+            for (const double value : {mark.begin, mark.end, mark.begin_width, mark.end_width})
+                builder.add_value(value);
+        for (const ColorBand& band : style.bands) {
+            builder.add_value(band.reach);
+            builder.add_value(band.color);
+        }
+    }
+}
+
+void add(const Fill& fill, DigestBuilder& builder) {
+    add(fill.colors, builder);
+    add(fill.hatch_of, builder);
+    for (const Hatch& hatch : fill.hatches) {
+        for (const double value : {hatch.spacing, hatch.width, hatch.angle})
+            builder.add_value(value);
+        builder.add_value(hatch.crossed);
+    }
+}
+
 Digest digest_of_look(const Relief& relief, const std::vector<Layer>& layers, unsigned threads) {
     DigestBuilder builder(threads);
     builder.add_value(relief.color);
@@ -20,8 +52,11 @@ Digest digest_of_look(const Relief& relief, const std::vector<Layer>& layers, un
     for (const Layer& layer : layers) {
         builder.add(Span<const char>(layer.name.data(), layer.name.size()));
         builder.add_value(layer.features.kind);
-        add(layer.colors, builder);
-        add(layer.widths, builder);
+        add(layer.fill, builder);
+        add(layer.stroke, builder);
+        add(layer.casing, builder);
+        builder.add_value(layer.outline_mode);
+        builder.add_value(layer.outline_order);
         add(layer.draw_order, builder);
     }
     return builder.finish();

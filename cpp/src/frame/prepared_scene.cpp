@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -21,10 +22,12 @@ constexpr double widest_in_extents = 1e4;
 
 void validate_reach(const Layer& layer, const Bounds& bounds) {
     const double extent = std::max(bounds.max_x - bounds.min_x, bounds.max_y - bounds.min_y);
-    for (const double width : layer.widths) {
-        if (!(width <= widest_in_extents * extent))
+    for (const Stroke* stroke : {&layer.stroke, &layer.casing}) {
+        const double widest = std::accumulate(stroke->widths.begin(), stroke->widths.end(), stroke->widest,
+                                              [](double a, double b) { return std::max(a, b); });
+        if (!(widest <= widest_in_extents * extent))
             throw Error(ErrorKind::style,
-                        "layer '" + layer.name + "': a line is " + std::to_string(width) +
+                        "layer '" + layer.name + "': a line is " + std::to_string(widest) +
                             " m wide, thousands of times the terrain's size; check the unit");
     }
     const double reach = farthest_in_extents * extent;

@@ -1,7 +1,5 @@
 #include "decalgl/vector/layer.h"
 
-#include <cmath>
-
 #include "decalgl/core/error.h"
 
 namespace decalgl {
@@ -9,22 +7,6 @@ namespace {
 
 [[noreturn]] void refuse(const Layer& layer, const std::string& what) {
     throw Error(ErrorKind::input, "layer '" + layer.name + "': " + what);
-}
-
-void validate_widths(const Layer& layer) {
-    const size_t count = layer.features.feature_count();
-    if (layer.features.kind == FeatureKind::polygons) {
-        if (!layer.widths.empty())
-            refuse(layer, "polygons have no width; leave it out");
-        return;
-    }
-    if (layer.widths.size() != 1 && layer.widths.size() != count)
-        refuse(layer, "needs one width, or one for each of its " + std::to_string(count) + " features");
-    for (size_t i = 0; i < layer.widths.size(); ++i) {
-        if (!std::isfinite(layer.widths[i]) || layer.widths[i] <= 0.0)
-            refuse(layer, "feature " + std::to_string(i) + " has width " + std::to_string(layer.widths[i]) +
-                              "; widths are positive lengths in metres");
-    }
 }
 
 void validate_draw_order(const Layer& layer) {
@@ -49,9 +31,14 @@ void validate_draw_order(const Layer& layer) {
 void validate(const Layer& layer) {
     validate(layer.features, layer.name);
     const size_t count = layer.features.feature_count();
-    if (layer.colors.size() != 4 && layer.colors.size() != 4 * count)
+    const bool lines = layer.features.kind == FeatureKind::lines;
+    if (lines ? !layer.fill.empty() : !layer.casing.empty())
+        refuse(layer, lines ? "lines have no fill; leave it out" : "polygons have no casing; leave it out");
+    if (count > 0 && layer.stroke.empty() && layer.fill.empty())
         refuse(layer, "needs one colour, or one for each of its " + std::to_string(count) + " features");
-    validate_widths(layer);
+    validate(layer.fill, count, layer.name);
+    validate(layer.stroke, count, layer.name);
+    validate(layer.casing, count, layer.name);
     validate_draw_order(layer);
 }
 

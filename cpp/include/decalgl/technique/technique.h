@@ -20,6 +20,7 @@
 #include "decalgl/core/memory.h"
 #include "decalgl/core/position_grid.h"
 #include "decalgl/core/progress.h"
+#include "decalgl/vector/decal.h"
 #include "decalgl/vector/layer.h"
 
 namespace decalgl::gl {
@@ -32,12 +33,6 @@ namespace decalgl {
 
 class ArchiveReader;
 class ArchiveWriter;
-
-// A feature as the user knows it: the layer's place in the scene and the feature's place in the layer.
-struct FeatureReference {
-    uint32_t layer = 0;
-    uint32_t feature = 0;
-};
 
 // How the structures of Zechmeister and Thöny are built and drawn; other techniques take no notice.
 enum class SegmentOrder { importance, hilbert };  // in a cell: in draw order, or along a Hilbert curve

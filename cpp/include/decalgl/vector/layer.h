@@ -6,22 +6,26 @@
 #include <vector>
 
 #include "decalgl/vector/features.h"
+#include "decalgl/vector/stroke.h"
 
 namespace decalgl {
+
+// Which side of a polygon's border its outline lies on: both, or the whole width on one.
+enum class OutlineMode : uint8_t { normal, inset, offset };
+// Over all fills of the layer, or each over its own feature's fill.
+enum class OutlineOrder : uint8_t { layer, feature };
 
 struct Layer {
     std::string name;
     Features features;
-    // One colour for all or one for each feature: R, G, B, A bytes, sRGB, straight alpha. A feature with
-    // alpha 0 is not drawn, has no id and is not picked.
-    std::vector<uint8_t> colors;
-    // Lines: width in metres on the map plane, one for all or one for each feature. Polygons: empty.
-    std::vector<double> widths;
+    Fill fill;      // of polygons
+    Stroke stroke;  // of lines; of polygons: their outlines
+    Stroke casing;  // of lines: under the strokes of all features
+    OutlineMode outline_mode = OutlineMode::normal;
+    OutlineOrder outline_order = OutlineOrder::layer;
     // Features from bottom to top; empty: as they stand.
     std::vector<int64_t> draw_order;
 
-    const uint8_t* color(size_t feature) const { return &colors[colors.size() == 4 ? 0 : 4 * feature]; }
-    double width(size_t feature) const { return widths[widths.size() == 1 ? 0 : feature]; }
     size_t feature_at(size_t rank) const {
         return draw_order.empty() ? rank : static_cast<size_t>(draw_order[rank]);
     }

@@ -34,7 +34,7 @@ std::vector<LayerRun> cut_into_groups(const TechniqueInput& input) {
 double widest_reach(const TechniqueInput& input) {
     double widest = 0.0;
     for (const Layer& layer : input.layers)
-        for (const double width : layer.widths)
+        for (const double width : layer.stroke.widths)
             widest = std::max(widest, 0.5 * width);
     return widest;
 }
@@ -55,10 +55,11 @@ Slots collect_slots(const TechniqueInput& input, const LayerRun& run, PreparedBv
         const Layer& layer = input.layers[l];
         for (size_t rank = layer.features.feature_count(); rank-- > 0;) {
             const size_t feature = layer.feature_at(rank);
-            const uint8_t* color = layer.color(feature);
+            const uint8_t* color =
+                group.kind == FeatureKind::lines ? layer.stroke.color(feature) : layer.fill.color(feature);
             if (color[3] == 0)
                 continue;
-            const double width = group.kind == FeatureKind::lines ? layer.width(feature) : 0.0;
+            const double width = group.kind == FeatureKind::lines ? layer.stroke.width(feature) : 0.0;
             const auto half_width = static_cast<float>(0.5 * width / bvh.lattice.quantum);
             group.styles.push_back({{color[0], color[1], color[2], color[3]}, half_width});
             group.widest = std::max(group.widest, half_width);

@@ -198,7 +198,7 @@ BucketReferences make_references(const OrderedFeatures& features, const Run& run
     ReferenceMaker maker(*features.grid, references);
     for (size_t slot = run.first_slot; slot <= run.last_slot; ++slot) {
         const Features& table = features.features(slot);
-        const size_t feature = features.slots[slot].feature;
+        const size_t feature = features.slots[slot].feature.feature;
         const double* vertices = table.coordinates.data();
         const VertexRange wanted{slot == run.first_slot ? run.first_vertex : features.first_vertex(slot),
                                  slot == run.last_slot ? run.end_vertex : features.end_vertex(slot)};

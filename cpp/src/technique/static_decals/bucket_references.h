@@ -98,11 +98,11 @@ private:
 struct OrderedFeatures {
     const TechniqueInput* input;
     const BucketGrid* grid;
-    Span<const FeatureReference> slots;
+    Span<const Decal> slots;
     Span<const float> half_widths;
 
     const Features& features(size_t slot) const {
-        return input->layers[slots[slot].layer - input->first_layer].features;
+        return input->layers[slots[slot].feature.layer - input->first_layer].features;
     }
     // Of a feature's vertices, counted in its layer: the first, and one past the last.
     size_t first_vertex(size_t slot) const { return vertex_at(slot, 0); }
@@ -111,7 +111,7 @@ struct OrderedFeatures {
 private:
     size_t vertex_at(size_t slot, size_t next) const {
         const Features& table = features(slot);
-        const int64_t part = table.feature_offsets[slots[slot].feature + next];
+        const int64_t part = table.feature_offsets[slots[slot].feature.feature + next];
         return static_cast<size_t>(table.part_offsets[static_cast<size_t>(part)]);
     }
 };

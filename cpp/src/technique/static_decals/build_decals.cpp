@@ -30,40 +30,40 @@ uint64_t segments_of(const Features& features, size_t feature) {
     return features.kind == FeatureKind::polygons ? vertices : vertices - std::min(parts, vertices);
 }
 
-void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
-    std::vector<FeatureReference> slots;
-    std::vector<DecalStyle> styles;
-    for (size_t l = input.layers.size(); l-- > 0;) {
-        const Layer& layer = input.layers[l];
-        const bool lines = layer.features.kind == FeatureKind::lines;
+void require_addressable(const TechniqueInput& input, size_t slots) {
+    for (const Layer& layer : input.layers) {
         if (layer.features.vertex_count() >= closing_edge)
             throw Error(ErrorKind::memory,
                         "static: layer '" + layer.name +
                             "' has more vertices than one layer can; split it into several");
-        for (size_t rank = layer.features.feature_count(); rank-- > 0;) {
-            const size_t feature = layer.feature_at(rank);
-            const uint8_t* color = layer.color(feature);
-            if (color[3] == 0)
-                continue;
-            DecalStyle style{{color[0], color[1], color[2], color[3]}, 0.0F};
-            if (lines) {
-                style.half_width = static_cast<float>(0.5 * layer.width(feature) / decals.grid.quantum);
-                decals.largest_scale = std::max(decals.largest_scale, line_scale(style.half_width));
-                decals.widest = std::max(decals.widest, style.half_width);
-                decals.narrowest =
-                    decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
-            }
-            slots.push_back({input.first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(feature)});
-            styles.push_back(style);
-            decals.has_one_color &= style.color == styles.front().color;
-            decals.segments += segments_of(layer.features, feature);
-            decals.has_translucency |= color[3] != 255;
-            (lines ? decals.has_lines : decals.has_polygons) = true;
-        }
     }
-    if (slots.size() > SLOT_MASK)
+    if (slots > SLOT_MASK)
         throw Error(ErrorKind::memory, "static: more than " + std::to_string(SLOT_MASK) +
                                            " features in one scene; draw a smaller part of the map at once");
+}
+
+void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
+    std::vector<Decal> slots = decals_of(input.layers, input.first_layer);
+    std::reverse(slots.begin(), slots.end());
+    require_addressable(input, slots.size());
+    std::vector<DecalStyle> styles;
+    for (const Decal& slot : slots) {
+        const DecalView view{&input.layers[slot.feature.layer - input.first_layer], slot};
+        const uint8_t* color = view.color();
+        DecalStyle style{{color[0], color[1], color[2], color[3]}, 0.0F};
+        if (slot.is_stroke()) {
+            style.half_width = static_cast<float>(view.half_width() / decals.grid.quantum);
+            decals.largest_scale = std::max(decals.largest_scale, line_scale(style.half_width));
+            decals.widest = std::max(decals.widest, style.half_width);
+            decals.narrowest =
+                decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
+        }
+        styles.push_back(style);
+        decals.has_one_color &= style.color == styles.front().color;
+        decals.segments += segments_of(view.layer->features, view.feature());
+        decals.has_translucency |= color[3] != 255;
+        (slot.is_stroke() ? decals.has_lines : decals.has_polygons) = true;
+    }
     decals.slots = std::move(slots);
     decals.styles = std::move(styles);
 }

@@ -141,7 +141,7 @@ std::unique_ptr<PreparedDecals> open_decals(const ArchiveReader& archive, const 
     decals->cells = archive.array<uint32_t>(prefix + "cells");
     decals->words = archive.array<uint32_t>(prefix + "words");
     decals->styles = archive.array<DecalStyle>(prefix + "styles");
-    decals->slots = archive.array<FeatureReference>(prefix + "slots");
+    decals->slots = archive.array<Decal>(prefix + "slots");
     const bool has_scale = decals->largest_scale >= 0 && decals->largest_scale <= largest_scale_there_is;
     if (!has_scale || !is_grid(decals->grid, decals->bucket_entries.size()))
         archive.refuse("the grid of the static index makes no sense");

@@ -22,7 +22,7 @@ static_assert(sizeof(DecalStyle) == 8, "read as one RG32UI texel");
 class PreparedDecals : public Prepared {
 public:
     PreparedCounts counts() const override;
-    FeatureReference feature(uint32_t id) const override { return slots[id]; }
+    FeatureReference feature(uint32_t id) const override { return slots[id].feature; }
     std::vector<FeatureReference> query(double x, double y) const override;
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
@@ -35,7 +35,7 @@ public:
     SharedArray<uint32_t> cells;
     SharedArray<uint32_t> words;
     SharedArray<DecalStyle> styles;
-    SharedArray<FeatureReference> slots;  // topmost first
+    SharedArray<Decal> slots;  // topmost first
     uint64_t segments = 0;
     uint64_t pieces = 0;
     uint32_t longest_list = 0;  // words

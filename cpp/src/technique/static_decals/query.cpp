@@ -78,7 +78,7 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
     Point at{}, previous{};
     const auto end_group = [&] {
         if (covered)
-            found.push_back(slots[slot]);
+            found.push_back(slots[slot].feature);
         covered = false;
     };
     for (const uint32_t word : list(place.entry)) {

@@ -51,7 +51,8 @@ void add_samples(const Layer& layer, const Bounds& bounds, std::vector<Sample>& 
         const Span<const double> coordinates = features.vertices(feature);
         const bool is_line = features.kind == FeatureKind::lines;
         samples.push_back({static_cast<double>(std::min(step, count - feature)),
-                           static_cast<double>(coordinates.size() / 2), is_line ? layer.width(feature) : 0.0,
+                           static_cast<double>(coordinates.size() / 2),
+                           is_line ? layer.stroke.width(feature) : 0.0,
                            is_line ? 0.0 : area_of(coordinates, bounds)});
     }
 }

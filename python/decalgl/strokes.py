@@ -1,0 +1,116 @@
+"""How a layer's lines and fills look once all styling arguments are resolved: what the core is given.
+
+Each feature has a colour and a width of its own; whatever else there is to a style is shared by many features,
+kept once, and named by its place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+CornerStyle = Literal["round", "miter", "bevel"]
+CapStyle = Literal["round", "butt", "square"]
+SlopeCorrection = Literal["none", "thoeny", "tangent"]
+OutlineMode = Literal["normal", "inset", "offset"]
+OutlineOrder = Literal["layer", "feature"]
+MITER_LIMIT = 40.0
+
+
+@dataclass(frozen=True)
+class PatternMark:
+    """A trapezoid along a line: metres from the period's beginning, widths as shares of the line's."""
+
+    begin: float
+    end: float
+    begin_width: float = 1.0
+    end_width: float = 1.0
+
+
+@dataclass(frozen=True)
+class LinePattern:
+    """Marks that repeat along a line every `period` metres on the map, `offset` metres in where it begins."""
+
+    period: float
+    marks: tuple[PatternMark, ...]
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class ColorBand:
+    """A colour (R, G, B, A bytes, straight alpha) across a line, to a share `reach` of its half width."""
+
+    reach: float
+    color: tuple[int, int, int, int]
+
+
+@dataclass(frozen=True)
+class StrokeStyle:
+    """What features of one layer may share of how their lines look.
+
+    miter_limit: degrees between two segments; sharper corners are round.
+    bands: colours from the centre line outwards, in place of the feature's own, whose alpha multiplies theirs.
+    """
+
+    corner: CornerStyle = "round"
+    cap: CapStyle = "round"
+    miter_limit: float = MITER_LIMIT
+    slope_correction: SlopeCorrection = "none"
+    pattern: LinePattern | None = None
+    bands: tuple[ColorBand, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """The strokes of a layer's features.
+
+    colors: uint8 (features, 4), sRGB with straight alpha; alpha 0 is not drawn.
+    widths: float64 (features), metres on the map plane; 0 is not drawn.
+    styles, style_of: uint32 (features), each feature's place among the styles.
+    widest: metres that strokes may be widened to later without preprocessing; 0 for as wide as they are.
+    """
+
+    colors: NDArray[np.uint8] = field(repr=False)
+    widths: NDArray[np.float64] = field(repr=False)
+    styles: tuple[StrokeStyle, ...] = (StrokeStyle(),)
+    style_of: NDArray[np.uint32] | None = field(default=None, repr=False)
+    widest: float = 0.0
+
+    def __post_init__(self) -> None:
+        _lock(self.colors, self.widths, self.style_of)
+
+
+@dataclass(frozen=True)
+class HatchPattern:
+    """Parallel lines `spacing` metres apart and `width` metres wide; angle in degrees from east, to the left."""
+
+    spacing: float
+    width: float
+    angle: float = 45.0
+    crossed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Fill:
+    """The fills of a layer's polygons.
+
+    colors: uint8 (features, 4), sRGB with straight alpha; alpha 0 is not drawn.
+    hatches, hatch_of: uint32 (features), each feature's place among the hatches; None is an even fill.
+    """
+
+    colors: NDArray[np.uint8] = field(repr=False)
+    hatches: tuple[HatchPattern | None, ...] = (None,)
+    hatch_of: NDArray[np.uint32] | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        _lock(self.colors, self.hatch_of)
+
+
+def _lock(*arrays: NDArray[np.generic] | None) -> None:
+    for array in arrays:
+        if array is not None:
+            array.flags.writeable = False
