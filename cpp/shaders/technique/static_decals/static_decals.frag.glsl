@@ -6,13 +6,18 @@
 // TRANSLUCENT    some feature is not opaque
 // COVERAGE       the samples' mean, else the pixel's centre alone
 // LEVELS         where it is many cells wide, from levels of detail
+// STYLES         some decal is more than a plain stroke or an even fill: of what it can be, JOINED, PATTERNS, BANDS,
+//                HATCHES, SLOPES
 // IDS            writes 1 + slot of the topmost feature at the centre instead of a colour
+#if !defined(STYLES) && (defined(JOINED) || defined(PATTERNS) || defined(BANDS) || defined(HATCHES) || defined(SLOPES))
+#define STYLES
+#endif
 #include "shared/ray.glsl"
 #include "technique/static_decals/point.glsl"
 #include "technique/static_decals/area.glsl"
 
 uniform usampler2D position_texture;
-#ifdef COVERAGE
+#if defined(COVERAGE) || defined(SLOPES)
 uniform sampler2D surface_texture;
 #endif
 
@@ -26,6 +31,9 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Position seen = unpack_position(texelFetch(position_texture, pixel, 0));
     LatticePosition position = on_lattice(seen);
+#ifdef SLOPES
+    set_slope(texelFetch(surface_texture, pixel, 0).xy);
+#endif
 #ifdef IDS
     id = walk_at(position).found + 1u;  // no slot, plus one, is 0
 #elif defined(COVERAGE)

@@ -33,7 +33,8 @@ private:
     gl::TextureBuffer cells_;
     gl::TextureBuffer texels_;
     gl::TextureBuffer styles_;
-    gl::Texture2D levels_;  // made by the first view that needs them
+    gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
+    gl::Texture2D levels_;                     // made by the first view that needs them
     bool draws_levels_ = false;
     gl::VertexArray no_vertices_;
 };
