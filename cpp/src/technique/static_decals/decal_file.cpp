@@ -161,9 +161,9 @@ void PreparedDecals::save(ArchiveWriter& archive, const std::string& prefix) con
     archive.add(prefix + "cells", cells.span());
     archive.add(prefix + "words", words.span());
     archive.add(prefix + "styles", styles.span());
-    archive.add(prefix + "slots", slots.span());
     archive.add(prefix + "kinds", kinds.span());
     archive.add(prefix + "style_records", style_records.span());
+    archive.add(prefix + "slots", slots.span());
 }
 
 std::unique_ptr<PreparedDecals> open_decals(const ArchiveReader& archive, const std::string& prefix) {
