@@ -118,6 +118,8 @@ public:
                                                  const MemoryAccount& memory) const = 0;
     virtual void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) = 0;
     virtual UpdateReport update(const View& view) = 0;
+    // Whether `draw` needs a depth attachment for itself, with whatever values.
+    virtual bool needs_depth(const View&) const { return false; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;
     // Writes 1 + id of the topmost feature at each pixel's centre, 0 where there is none.

@@ -29,6 +29,7 @@ struct Group {
     vec2 at;           // the pixel's centre, in the group's coordinates
     vec2 corner;       // from the cell's corner to the centre, in the group's units
     vec2 from;         // from the last word's point to the centre
+    vec2 before;       // from that of the word before it
     float half_width;  // of a line
     uint covered;      // samples
 #ifdef STYLES
@@ -78,7 +79,7 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     // Rounded as what leads from the border's points is: not to be simplified.
     precise vec2 corner = group.at - bias;
     group.corner = corner;
-    group.from = vec2(0.0);
+    group.from = group.before = vec2(0.0);
     return group;
 }
 
@@ -211,6 +212,29 @@ uint crossing_mask(Crossing crossing) {
     return mask;
 }
 
+// Reads the group's next point, and says whether the edge to it decides for all samples alike.
+uint read_point(inout Group group, uint word) {
+#ifdef PATTERNS
+    if (group.pen.awaits_phase) {
+        group.pen.periods = float(word) / float(PHASE_ONE);
+        group.pen.awaits_phase = false;
+        return 0u;
+    }
+#endif
+    vec2 to = group.at - point_of(word);
+#ifdef STYLES
+    if (group.line) to = group.metric * to;
+#endif
+    group.before = starts_edge(word) ? to : group.from;
+    group.from = to;
+#ifdef STYLES
+    if (group.line) return next_alike(group, word, group.before, to);
+#else
+    if (group.line) return alike_in_stroke(group, group.before, to);
+#endif
+    return starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, group.before, to));
+}
+
 // Front-to-back composition of masks. `open`: samples that still see something behind what was added.
 struct Samples {
     uint open;
@@ -290,7 +314,6 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
     bool ended = false;
     do {
         uint alike = all_samples;
-        vec2 from = vec2(0.0), to = vec2(0.0);
         do {
             uint word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
             ++at;
@@ -302,38 +325,18 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
 #endif
                 group = group_of(word, bias, local, foot);
                 ended = word == LIST_END || samples.open == 0u;
-#ifdef PATTERNS
-            } else if (group.pen.awaits_phase) {
-                group.pen.periods = float(word) / float(PHASE_ONE);
-                group.pen.awaits_phase = false;
-#endif
             } else {
-                to = group.at - point_of(word);
-#ifdef STYLES
-                if (group.line) to = group.metric * to;
-#endif
-                from = starts_edge(word) ? to : group.from;
-                group.from = to;
-                if (group.line) {
-#ifdef STYLES
-                    alike = next_alike(group, word, from, to);
-#else
-                    alike = alike_in_stroke(group, from, to);
-#endif
-                    if (alike != for_each) group.covered |= alike;
-                } else {
-                    alike = starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, from, to));
-                    if (alike != for_each) group.covered ^= alike;
-                }
+                alike = read_point(group, word);
+                if (alike != for_each) group.covered = group.line ? group.covered | alike : group.covered ^ alike;
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
 #ifdef STYLES
-            if (group.line) group.covered |= styled_mask(group, from, to);
+            if (group.line) group.covered |= styled_mask(group, group.before, group.from);
 #else
-            if (group.line) group.covered |= stroke_mask(group, from, to);
+            if (group.line) group.covered |= stroke_mask(group, group.before, group.from);
 #endif
-            else group.covered ^= crossing_mask(crossing_of(group, from, to));
+            else group.covered ^= crossing_mask(crossing_of(group, group.before, group.from));
         }
     } while (!ended);
     return samples.sum;
@@ -379,13 +382,4 @@ vec4 composite_cells(LatticePosition centre, mat2 foot) {
         left &= ~inside;
     } while (left != 0u);
     return sum / float(sample_count);
-}
-
-vec4 composite_area(LatticePosition centre, mat2 foot) {
-#ifdef LEVELS
-    if (spans_texels(foot)) return mean_of_levels(centre, foot);
-#endif
-    float size = max(length(foot[0]), length(foot[1]));
-    if (size > most_cells_across * float(1 << cell_at(centre.quantum).bits)) return composite_points(centre, foot);
-    return composite_cells(centre, foot);
 }

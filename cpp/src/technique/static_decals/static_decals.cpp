@@ -6,6 +6,7 @@
 
 #include "gl/gl.h"
 #include "gl/texture.h"
+#include "technique/static_decals/area_classes.h"
 #include "technique/static_decals/levels.h"
 
 namespace decalgl {
@@ -117,10 +118,38 @@ void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::Progra
     else if (prepared_->has_one_color && view.antialias == Antialias::none && !has_styles(*prepared_))
         flags.insert("ONE_COLOR");
     if (view.antialias == Antialias::coverage)
-        flags.insert("COVERAGE");
+        draw_areas(flags, gbuffer, programs);
+    else
+        draw_full_screen(std::move(flags), gbuffer, programs);
+}
+
+// The class of each pixel first, then those of each class (area_classes.h).
+void StaticDecals::draw_areas(const gl::Flags& flags, const GBufferView& gbuffer,
+                              gl::ProgramLibrary& programs) {
+    const auto draw_class = [&](const char* flag) {
+        gl::Flags all = flags;
+        all.insert(flag);
+        if (draws_levels_)
+            all.insert("LEVELS");
+        draw_full_screen(std::move(all), gbuffer, programs);
+    };
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    draw_class("CLASSES");
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_EQUAL);
+    const auto draw_rest = [&](const char* flag, double kind) {
+        glDepthRange(kind, kind);
+        draw_class(flag);
+    };
+    draw_rest("CELLS", CLASS_CELLS);
+    draw_rest("POINTS", CLASS_POINTS);
     if (draws_levels_)
-        flags.insert("LEVELS");
-    draw_full_screen(std::move(flags), gbuffer, programs);
+        draw_rest("FROM_LEVELS", CLASS_LEVELS);
+    glDepthRange(0.0, 1.0);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+    glDisable(GL_DEPTH_TEST);
 }
 
 void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
@@ -142,7 +171,10 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
-    if (flags.count("COVERAGE") != 0 || flags.count("SLOPES") != 0) {
+    const bool sees_area =
+        flags.count("CLASSES") + flags.count("CELLS") + flags.count("POINTS") + flags.count("FROM_LEVELS") >
+        0;
+    if (sees_area || flags.count("SLOPES") != 0) {
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
     }

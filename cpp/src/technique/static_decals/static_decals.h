@@ -19,12 +19,14 @@ public:
                                          const MemoryAccount& memory) const override;
     void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
+    bool needs_depth(const View& view) const override { return view.antialias == Antialias::coverage; }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
     bool needs_levels(const View& view) const;
     void make_levels();
+    void draw_areas(const gl::Flags& flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     void draw_full_screen(gl::Flags flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
 
     std::shared_ptr<const PreparedDecals> prepared_;
