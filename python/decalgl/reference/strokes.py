@@ -89,8 +89,8 @@ class Bars:
         np.minimum(inside, -after, out=inside, where=self.ends != ROUNDED)
         if style.pattern is None:
             return np.minimum(inside, half_width - gauge), gauge, half_width
-        # Arc length is that of the map, whatever the slope.
-        on_map = _dot(xy - self.start, self.vector) / np.hypot(*self.vector.T)
+        # The foot of the perpendicular is measured on the slope, arc length on the map.
+        on_map = t / length * np.hypot(*self.vector.T)
         covered = pattern_clearance(style.pattern, self.arc + on_map, gauge, half_width, along=True)
         return np.minimum(inside, covered), gauge, half_width
 
@@ -130,7 +130,7 @@ class Joints:
         inside = np.full(len(xy), np.inf)
         at = np.flatnonzero((self.shape == MITER) | (self.shape == BEVEL))
         coming, going = _unit(to_ground(self.coming)[at]), _unit(to_ground(self.going)[at])
-        wedge, across = _corner(offset[at], coming, going, self.shape[at] == BEVEL)
+        wedge, across, steepness = _corner(offset[at], coming, going, self.shape[at] == BEVEL)
         # |d1 + d2| / 2 is the sine of half the angle between the segments.
         opening = np.hypot(*(coming + going).T) / 2
         sharp = (self.shape[at] == MITER) & (
@@ -141,23 +141,29 @@ class Joints:
             covered = half_width - gauge
         else:
             covered = pattern_clearance(style.pattern, self.arc, gauge, half_width, along=False)
+        covered[at[~sharp]] /= steepness[~sharp]
         return np.minimum(inside, covered), gauge, half_width
 
 
 def _corner(
     offset: FloatArray, coming: FloatArray, going: FloatArray, bevel: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    """Clearance from the sides of the wedge between two bars' ends, and the gauge of the corner in it, both (n,)."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of points in the wedge between two bars' ends, all (n,).
+
+    Clearance from the wedge's sides, the gauge of the corner, and how fast that grows with distance.
+    """
     wedge = np.minimum(_dot(offset, coming), -_dot(offset, going))
     gauge = np.maximum(np.abs(_cross(coming, offset)), np.abs(_cross(going, offset)))
     cosine = np.hypot(*(coming + going).T) / 2
     turn = coming - going
     with np.errstate(divide="ignore", invalid="ignore"):
         outwards = _dot(offset, turn) / np.hypot(*turn.T) / cosine
-    gauge[bevel] = np.maximum(gauge, outwards)[bevel]
+        cut = bevel & (outwards > gauge)
+        steepness = np.where(cut, 1.0 / cosine, 1.0)
+    gauge[cut] = outwards[cut]
     nothing = bevel & ~np.isfinite(outwards)
-    wedge[nothing], gauge[nothing] = -np.inf, np.inf
-    return wedge, gauge
+    wedge[nothing], gauge[nothing], steepness[nothing] = -np.inf, np.inf, 1.0
+    return wedge, gauge, steepness
 
 
 def pattern_clearance(
@@ -170,13 +176,14 @@ def pattern_clearance(
     best = np.full(len(arc), -np.inf)
     for mark in pattern.marks:
         half = (mark.end - mark.begin) / 2
+        rise = (mark.end_width - mark.begin_width) / (2 * half)
         place = arc + pattern.offset - (mark.begin + mark.end) / 2
         place -= pattern.period * np.round(place / pattern.period)
-        share = np.clip((place / half + 1) / 2, 0.0, 1.0)
-        width = half_width * (mark.begin_width + share * (mark.end_width - mark.begin_width))
-        taper = half_width * (mark.end_width - mark.begin_width) / (2 * half) * along
-        across = (width - gauge) / np.hypot(1.0, taper)
-        np.maximum(best, np.minimum(half - np.abs(place), across), out=best)
+        # The nearest mark covers; the one on the other side may have the nearer border.
+        for there in (place, place - np.copysign(pattern.period, place)):
+            width = half_width * (mark.begin_width + rise * (np.clip(there, -half, half) + half))
+            across = (width - gauge) / np.hypot(1.0, half_width * rise * along)
+            np.maximum(best, np.minimum(half - np.abs(there), across), out=best)
     return best
 
 
@@ -252,7 +259,8 @@ def _pieces(chains: Chains, style: StyleLike, half_widths: FloatArray) -> tuple[
     half_width = half_widths[feature]
     begins, ends = chains.is_end()
     dot = begins & ends
-    # The vertex's own disc, where there is one, must cover by the vertex's place in the pattern.
+    # A bar with a round end is a disc's other half too, unless it is flat and near at the other end, or has a pattern:
+    # then the disc is a piece of its own, which covers by the vertex's place in the pattern.
     joined = ROUNDED if style.corner == "round" and style.pattern is None else FLAT
     capped = {"round": ROUNDED if style.pattern is None else FLAT, "butt": FLAT, "square": LENGTHENED}[
         style.cap
@@ -275,10 +283,10 @@ def _pieces(chains: Chains, style: StyleLike, half_widths: FloatArray) -> tuple[
     inner = ~begins & ~ends
     if style.corner != "round":
         shape[inner] = MITER if style.corner == "miter" else BEVEL
-    elif style.pattern is not None:
+    elif style.pattern is not None or style.cap == "butt":
         shape[inner] = DISC
     if style.cap == "round":
-        shape[dot if style.pattern is None else begins | ends] = DISC
+        shape[dot if style.pattern is None and style.corner == "round" else begins | ends] = DISC
     elif style.cap == "square":
         shape[dot] = SQUARE
     some = np.flatnonzero(shape >= 0)
