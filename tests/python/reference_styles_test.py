@@ -89,7 +89,10 @@ def test_corners_and_caps_match_shapely(corner: str, cap: str, turn: float) -> N
 @pytest.mark.parametrize("closed", [False, True])
 def test_long_lines_match_shapely(corner: str, closed: bool) -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, 12 + closed)
-    points = np.stack([np.cos(angle), np.sin(angle)], axis=1) * (10.0 + 3.0 * (np.arange(12 + closed) % 2))[:, None]
+    points = (
+        np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        * (10.0 + 3.0 * (np.arange(12 + closed) % 2))[:, None]
+    )
     if closed:
         points[-1] = points[0]
     style = Style(corner=corner, cap="square", miter_limit=10.0)
@@ -139,7 +142,11 @@ def test_corner_angles_at_the_limit_and_beyond() -> None:
     assert holds(corner(60.0, 61.0), [0.999 * tip, 0.499 * tip, 0.501 * tip]) == [False, True, False]
     # Exact reversals are sharper than any limit; a bevel adds nothing to them, nor to straight lines.
     back = [(0, 0), (9, 0), (1, 0)]
-    assert holds(line(back, 2.0, corner="miter", cap="butt"), [(9.9, 0), (9.0, 1.0), (10.1, 0)]) == [True, True, False]
+    assert holds(line(back, 2.0, corner="miter", cap="butt"), [(9.9, 0), (9.0, 1.0), (10.1, 0)]) == [
+        True,
+        True,
+        False,
+    ]
     assert holds(line(back, 2.0, corner="bevel", cap="butt"), [(9.1, 0), (8.9, 0.9)]) == [False, True]
     straight = [(0, 0), (5, 0), (9, 0)]
     for kind in CORNERS:
@@ -152,11 +159,20 @@ def test_degenerate_parts() -> None:
         for points in ([(3, 3)], [(3, 3), (3, 3), (3, 3)]):
             assert holds(line(points, 2.0, cap=cap), [(3.6, 3.6), (3.95, 3.95), (4.05, 3)]) == expected
     # Repeated vertices count once; there and back is not closed, a triangle is.
-    assert holds(line([(0, 0), (0, 0), (4, 0), (4, 0)], 2.0, cap="butt"), [(-0.1, 0), (2, 0)]) == [False, True]
+    assert holds(line([(0, 0), (0, 0), (4, 0), (4, 0)], 2.0, cap="butt"), [(-0.1, 0), (2, 0)]) == [
+        False,
+        True,
+    ]
     assert holds(line([(0, 0), (4, 0), (0, 0)], 2.0, cap="square"), [(-0.9, 0.9), (4.5, 0.5)]) == [True, True]
     triangle = [(0, 0), (4, 0), (0, 4), (0, 0)]
-    assert holds(line(triangle, 2.0, corner="miter", cap="square"), [(-0.9, -0.9), (-0.9, 1.0)]) == [True, True]
-    assert holds(line(triangle, 2.0, corner="bevel", cap="square"), [(-0.9, -0.9), (-0.9, 1.0)]) == [False, True]
+    assert holds(line(triangle, 2.0, corner="miter", cap="square"), [(-0.9, -0.9), (-0.9, 1.0)]) == [
+        True,
+        True,
+    ]
+    assert holds(line(triangle, 2.0, corner="bevel", cap="square"), [(-0.9, -0.9), (-0.9, 1.0)]) == [
+        False,
+        True,
+    ]
     rings: list[list[Any]] = [[(0, 0), (4, 0), (0, 0)], [(9, 9)], []]
     layer = make_layer("polygons", [rings], width=2.0)
     assert holds(layer, [(2, 0), (9, 9)]) == [False, False]
@@ -172,7 +188,17 @@ def dashes(*marks: tuple[float, ...], period: float, offset: float = 0.0) -> Lin
 def test_dashes_follow_the_arc_length() -> None:
     pattern = dashes((0, 2), (3, 4), period=6, offset=1)
     layer = line([(0, 0), (4, 0), (4, 20)], 1.0, pattern=pattern, corner="bevel", cap="butt")
-    on = {0.5: True, 1.1: False, 2.5: True, 3.1: False, 5.5: True, 7.5: False, 8.5: True, 10.0: False, 11.5: True}
+    on = {
+        0.5: True,
+        1.1: False,
+        2.5: True,
+        3.1: False,
+        5.5: True,
+        7.5: False,
+        8.5: True,
+        10.0: False,
+        11.5: True,
+    }
     points = [(a, 0.3) if a < 4 else (4.3, a - 4) for a in on]
     assert holds(layer, points) == list(on.values())
 
@@ -180,7 +206,14 @@ def test_dashes_follow_the_arc_length() -> None:
 def test_patterned_corners_and_caps_take_their_vertex_s_place() -> None:
     ends = [(0, 0), (4, 0), (4, 4)]
     layer = line(ends, 2.0, pattern=dashes((0, 1), (3.9, 4.1), (7.5, 8), period=10), cap="round")
-    expected = {(-0.9, 0.0): True, (4.6, -0.6): True, (3.5, 0.8): True, (2.5, 0.0): False, (4.0, 4.9): True, (4, 2.5): False}
+    expected = {
+        (-0.9, 0.0): True,
+        (4.6, -0.6): True,
+        (3.5, 0.8): True,
+        (2.5, 0.0): False,
+        (4.0, 4.9): True,
+        (4, 2.5): False,
+    }
     assert holds(layer, list(expected)) == list(expected.values())
     # The vertices at 0, 4 and 8 lie in gaps.
     layer = line(ends, 2.0, pattern=dashes((0.2, 1), period=5), cap="round")
@@ -235,7 +268,11 @@ def test_membership_matches_areas(
 
 
 def test_bands_go_by_the_nearest_piece() -> None:
-    bands = (ColorBand(0.25, (255, 0, 0, 255)), ColorBand(0.5, (0, 255, 0, 0)), ColorBand(1.0, (0, 0, 255, 128)))
+    bands = (
+        ColorBand(0.25, (255, 0, 0, 255)),
+        ColorBand(0.5, (0, 255, 0, 0)),
+        ColorBand(1.0, (0, 0, 255, 128)),
+    )
     layer = line([(0, 0), (10, 0), (10, 10)], 8.0, bands=bands, corner="miter", cap="butt")
     assert layer.stroke is not None
     layer.stroke.colors[0] = (9, 9, 9, 127)
@@ -249,11 +286,18 @@ def test_bands_go_by_the_nearest_piece() -> None:
             assert len(colors) == 0
         else:
             alpha = expected[3]
-            np.testing.assert_allclose(colors, [[expected[0] * alpha, expected[1], expected[2] * alpha, alpha]])
+            np.testing.assert_allclose(
+                colors, [[expected[0] * alpha, expected[1], expected[2] * alpha, alpha]]
+            )
 
 
 def test_casings_lie_under_all_strokes_and_outlines_where_told() -> None:
-    cross = make_layer("lines", [[[(-9, 0), (9, 0)]], [[(0, -9), (0, 9)]]], width=2.0, colors=[(1, 0, 0, 255), (2, 0, 0, 255)])
+    cross = make_layer(
+        "lines",
+        [[[(-9, 0), (9, 0)]], [[(0, -9), (0, 9)]]],
+        width=2.0,
+        colors=[(1, 0, 0, 255), (2, 0, 0, 255)],
+    )
     cross.casing = Stroke(np.array([(3, 0, 0, 255), (4, 0, 0, 0)], dtype=np.uint8), np.array([6.0, 6.0]))
     held = ref.membership(cross, np.array([(0.0, 0.0), (0.5, 2.5), (5.0, 2.0), (2.5, 5.0)]))
     assert [held.at(i).tolist() for i in range(4)] == [[0, 0, 1], [0, 1], [0], []]

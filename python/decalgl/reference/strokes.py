@@ -208,7 +208,12 @@ class StyledStroke:
         ):
             reach = (pieces.reach(self.style) + beyond) * (1 + 1e-9)
             near, first, last = _neighbours(start, end, reach, points)
+            left = np.minimum(start[near, 0], end[near, 0]) - reach[near]
+            right = np.maximum(start[near, 0], end[near, 0]) + reach[near]
             for owner, point in candidate_pairs(first, last):
+                x = points.x[point]
+                beside = np.flatnonzero((x >= left[owner]) & (x <= right[owner]))
+                owner, point = owner[beside], point[beside]
                 some = pieces[near[owner]]
                 xy = np.stack([points.x[point], points.y[point]], axis=1)
                 there = None if slopes is None else slopes[point]
