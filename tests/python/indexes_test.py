@@ -62,7 +62,7 @@ def test_every_scene_is_as_right_as_in_the_grid(name: str) -> None:
     grid = judge.draw(renderer("grid"), view)
     bvh = judge.draw(renderer(FEW_CELLS.get(name, "bvh")), view)
     assert (bvh.ids >= 0).any()
-    own = judge.judge_ids(view, bvh, judge.own_surface(bvh), tolerance(bvh))
+    own = judge.judge_ids(view, bvh, judge.own_surface(view, bvh), tolerance(bvh))
     assert own.far == 0, own
     differs = (grid.ids != bvh.ids) | (grid.layers != bvh.layers) | (apart(grid, bvh) > 2)
     assert far_from_edges(view, bvh, differs, tolerance(grid, bvh)) == 0

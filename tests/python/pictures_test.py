@@ -82,7 +82,7 @@ def test_positions_are_exact(case: Case) -> None:
 
 def test_ids_are_right(case: Case) -> None:
     assert (case.frame.ids >= 0).any()
-    own = judge.judge_ids(case.view, case.frame, judge.own_surface(case.frame), case.tolerance)
+    own = judge.judge_ids(case.view, case.frame, judge.own_surface(case.view, case.frame), case.tolerance)
     assert own.far == 0, own
     assert own.wrong <= 1e-3 * case.frame.ids.size, own
 

@@ -146,7 +146,11 @@ def test_samples_agree_with_areas(kind: str, orthographic: bool) -> None:
     x, y = np.meshgrid(np.linspace(-100, 100, 3), np.linspace(100, -100, 3))
     scene = Scene((0.2 * x + 0.1 * y).astype(np.float32), Terrain(-100.0, 100.0, 100.0, 100.0))
     scene.layers = [
-        make_layer(kind, [[(ring - ring.mean(axis=0)) * 0.6] for (ring,) in star_features(3, 6)], width=1.3)
+        make_layer(
+            kind,
+            [[(ring - ring.mean(axis=0)) * 0.6] for (ring,) in star_features(3, 6)],
+            width=1.3 if kind == "lines" else 0.0,
+        )
     ]
     lens: dict[str, Any] = {"fov": None, "view_height": 40.0} if orthographic else {"fov": 35.0}
     camera, size, crop = Camera((10.0, -50.0, 40.0), (0.0, 0.0, 0.0), **lens), (96, 64), (20, 10, 70, 50)

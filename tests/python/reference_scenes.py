@@ -23,11 +23,39 @@ class Features:
 
 
 @dataclass
-class Layer:
-    features: Features
+class Style:
+    corner: str = "round"
+    cap: str = "round"
+    miter_limit: float = 40.0
+    slope_correction: str = "none"
+    pattern: Any = None
+    bands: tuple[Any, ...] = ()
+
+
+@dataclass
+class Stroke:
     colors: NDArray[np.uint8]
     widths: FloatArray
+    styles: tuple[Style, ...] = (Style(),)
+    style_of: NDArray[np.int64] | None = None
+
+
+@dataclass
+class Fill:
+    colors: NDArray[np.uint8]
+    hatches: tuple[Any, ...] = (None,)
+    hatch_of: NDArray[np.int64] | None = None
+
+
+@dataclass
+class Layer:
+    features: Features
     draw_order: NDArray[np.int64]
+    fill: Fill | None = None
+    stroke: Stroke | None = None
+    casing: Stroke | None = None
+    outline_mode: str = "normal"
+    outline_order: str = "layer"
 
 
 @dataclass
@@ -54,8 +82,15 @@ class Camera:
     view_height: float | None = None
 
 
-def make_layer(kind: str, features: list[list[Any]], *, width: float = 0.0, colors: Any = None) -> Layer:
-    """A layer of features, each a list of parts, each a list of (x, y)."""
+def make_layer(
+    kind: str,
+    features: list[list[Any]],
+    *,
+    width: Any = 0.0,
+    colors: Any = None,
+    style: Style | None = None,
+) -> Layer:
+    """A layer of features, each a list of parts, each a list of (x, y). Polygons with a width have outlines too."""
     parts = [np.asarray(part, dtype=np.float64).reshape(-1, 2) for feature in features for part in feature]
     count = len(features)
     if colors is None:
@@ -67,9 +102,14 @@ def make_layer(kind: str, features: list[list[Any]], *, width: float = 0.0, colo
         np.cumsum([0] + [len(feature) for feature in features]),
         np.arange(count) * 10,
     )
-    return Layer(
-        table, np.array(colors, dtype=np.uint8).reshape(-1, 4), np.full(count, width), np.arange(count)
-    )
+    given = np.array(colors, dtype=np.uint8).reshape(-1, 4)
+    widths = np.broadcast_to(np.asarray(width, dtype=np.float64), (count,)).copy()
+    layer = Layer(table, np.arange(count))
+    if kind == "polygons":
+        layer.fill = Fill(given)
+    if kind == "lines" or widths.any():
+        layer.stroke = Stroke(given, widths, (style or Style(),))
+    return layer
 
 
 def square(x: float, y: float, side: float) -> list[tuple[float, float]]:

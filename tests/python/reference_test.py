@@ -268,15 +268,15 @@ def test_membership_is_in_draw_order_and_skips_what_is_not_a_place() -> None:
 def test_edge_distance_matches_shapely(limit: float) -> None:
     rings, lines = star_features(12, 8), [*star_features(5, 9), [np.array([(40.0, 40.0)])]]
     scene = flat_scene()
-    scene.layers = [make_layer("polygons", rings), make_layer("lines", lines, width=6.0)]
-    scene.layers[1].widths = np.array([6.0, 0.0, 30.0, 1.0, 6.0, 12.0])
+    widths = np.array([6.0, 0.01, 30.0, 1.0, 6.0, 12.0])
+    scene.layers = [make_layer("polygons", rings), make_layer("lines", lines, width=widths)]
     xy = np.random.default_rng(4).uniform(-200, 300, (400, 2))
     xy[200:] = xy[200:] / 5 + 40
     points = shapely.points(xy)
     expected = np.full(len(xy), np.inf)
     for (ring,) in rings:
         expected = np.minimum(expected, shapely.distance(shapely.LinearRing(ring), points))
-    for (line,), width in zip(lines, scene.layers[1].widths, strict=True):
+    for (line,), width in zip(lines, widths, strict=True):
         shape = shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0])
         expected = np.minimum(expected, np.abs(shapely.distance(shape, points) - width / 2))
     expected[expected > limit] = np.inf

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -182,17 +183,13 @@ def add_walks(
 def repainted(scene: dg.Scene, relief: dg.Relief) -> dg.Scene:
     """The same terrain and layers under another relief."""
     copy = dg.Scene(scene.terrain, scene.exaggeration, relief)
-    for layer in scene.layers:
-        rows = layer.features.rows
-        count = int(rows.max()) + 1 if len(rows) else 0
-        colors, ranks, widths = np.zeros((count, 4)), np.zeros(count), np.ones(count)
-        colors[rows] = layer.colors / 255.0
-        ranks[rows[layer.draw_order]] = np.arange(len(rows))
-        widths[rows] = layer.widths
-        if layer.kind == "polygons":
-            copy.add_polygons(layer.features, name=layer.name, color=colors, order=ranks)
-        else:
-            copy.add_lines(
-                layer.features, name=layer.name, color=colors, order=ranks, width=widths, width_units="m"
-            )
+    copy._layers.extend(scene.layers)
+    return copy
+
+
+def with_features(scene: dg.Scene, tables: list[dg.FeatureTable]) -> dg.Scene:
+    """The same terrain and styles over other geometry, a table a layer."""
+    copy = dg.Scene(scene.terrain, scene.exaggeration, scene.relief)
+    for layer, table in zip(scene.layers, tables, strict=True):
+        copy._layers.append(dataclasses.replace(layer, features=table))
     return copy

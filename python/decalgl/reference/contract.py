@@ -49,15 +49,108 @@ class FeaturesLike(Protocol):
     def rows(self) -> NDArray[np.integer[Any]]: ...
 
 
-class LayerLike(Protocol):
-    """Features with colours (features, 4) uint8 straight alpha, widths in metres, draw order."""
+class MarkLike(Protocol):
+    """A mark of a pattern: where it lies in the period, metres, and shares of the width at its ends."""
 
     @property
-    def features(self) -> FeaturesLike: ...
+    def begin(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+    @property
+    def begin_width(self) -> float: ...
+    @property
+    def end_width(self) -> float: ...
+
+
+class PatternLike(Protocol):
+    """Marks that repeat along a line, lengths in metres on the map."""
+
+    @property
+    def period(self) -> float: ...
+    @property
+    def offset(self) -> float: ...
+    @property
+    def marks(self) -> Sequence[MarkLike]: ...
+
+
+class BandLike(Protocol):
+    """A colour (R, G, B, A bytes) across a line, up to a share of its half width."""
+
+    @property
+    def reach(self) -> float: ...
+    @property
+    def color(self) -> Sequence[int]: ...
+
+
+class StyleLike(Protocol):
+    """What strokes share: words as in `decalgl.strokes`, the miter limit in degrees."""
+
+    @property
+    def corner(self) -> str: ...
+    @property
+    def cap(self) -> str: ...
+    @property
+    def miter_limit(self) -> float: ...
+    @property
+    def slope_correction(self) -> str: ...
+    @property
+    def pattern(self) -> PatternLike | None: ...
+    @property
+    def bands(self) -> Sequence[BandLike]: ...
+
+
+class StrokeLike(Protocol):
+    """Colours (features, 4) uint8 straight alpha, widths (features,) in metres, each feature's style."""
+
     @property
     def colors(self) -> NDArray[np.uint8]: ...
     @property
     def widths(self) -> FloatArray: ...
+    @property
+    def styles(self) -> Sequence[StyleLike]: ...
+    @property
+    def style_of(self) -> NDArray[np.integer[Any]] | None: ...
+
+
+class HatchLike(Protocol):
+    """Parallel lines in place of an even fill: metres, and degrees from east to the left."""
+
+    @property
+    def spacing(self) -> float: ...
+    @property
+    def width(self) -> float: ...
+    @property
+    def angle(self) -> float: ...
+    @property
+    def crossed(self) -> bool: ...
+
+
+class FillLike(Protocol):
+    """Colours (features, 4) uint8 straight alpha, each feature's hatch; None is an even fill."""
+
+    @property
+    def colors(self) -> NDArray[np.uint8]: ...
+    @property
+    def hatches(self) -> Sequence[HatchLike | None]: ...
+    @property
+    def hatch_of(self) -> NDArray[np.integer[Any]] | None: ...
+
+
+class LayerLike(Protocol):
+    """Features, how they look, and their order from bottom to top."""
+
+    @property
+    def features(self) -> FeaturesLike: ...
+    @property
+    def fill(self) -> FillLike | None: ...
+    @property
+    def stroke(self) -> StrokeLike | None: ...
+    @property
+    def casing(self) -> StrokeLike | None: ...
+    @property
+    def outline_mode(self) -> str: ...
+    @property
+    def outline_order(self) -> str: ...
     @property
     def draw_order(self) -> NDArray[np.integer[Any]]: ...
 
@@ -86,16 +179,3 @@ class CameraLike(Protocol):
     def fov(self) -> float | None: ...
     @property
     def view_height(self) -> float | None: ...
-
-
-def visible_features(layer: LayerLike) -> BoolArray:
-    """Mask (features,): features with alpha 0 are not drawn and have no id."""
-    return np.asarray(layer.colors, dtype=np.uint8).reshape(-1, 4)[:, 3] > 0
-
-
-def draw_ranks(layer: LayerLike) -> IntArray:
-    """Rank (features,) of each feature in its layer's draw order, 0 at the bottom."""
-    order = np.asarray(layer.draw_order, dtype=np.int64)
-    ranks = np.empty(len(order), dtype=np.int64)
-    ranks[order] = np.arange(len(order))
-    return ranks

@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from .areas import feature_area
 from .membership import membership
-from .picture import sample_surface
+from .picture import sample_surface, slopes_of
 from .rays import RayCaster, Surface, Viewpoint, pixel_centres
 
 if TYPE_CHECKING:
-    from .contract import CameraLike, Crop, FeaturesLike, FloatArray, LayerLike, SceneLike, Size
+    from .contract import CameraLike, Crop, FloatArray, SceneLike, Size
 
-# Segments of a quarter circle in joints and caps of lines: area errs by 1e-5 of the disc's.
-QUARTER_SEGMENTS = 128
 CORNERS = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
 
 
@@ -30,7 +29,9 @@ def exact_coverage(
     """Covered fraction (y1 - y0, x1 - x0), 0..1, of the pixels of a crop (x0, y0, x1, y1).
 
     feature: index in the layer's feature table. NaN where the centre sees sky or a corner's ray
-    does not meet the tangent plane. Colours and other features are not looked at.
+    does not meet the tangent plane. The feature is all that is drawn of it; other features are not looked at.
+
+    Raises ValueError for strokes with slope correction.
     """
     x0, y0, x1, y1 = crop
     caster = RayCaster(scene, camera, size)
@@ -73,45 +74,11 @@ def sampled_coverage(
         surface = sample_surface(scene, camera, size, crop, samples, seed)
     chosen = scene.layers[layer]
     only = np.arange(len(chosen.features.rows)) == feature
-    held = membership(chosen, surface.world[..., :2].reshape(-1, 2), only)
+    slopes = slopes_of(scene, camera, size, surface)
+    held = membership(chosen, surface.world[..., :2].reshape(-1, 2), only, slopes)
     inside = np.diff(held.offsets).reshape(surface.depth.shape)
     fraction: FloatArray = inside.mean(axis=(2, 3))
     return fraction
-
-
-def feature_area(layer: LayerLike, feature: int, origin: FloatArray) -> shapely.Geometry:
-    """The ground that one feature covers, as a geometry relative to a map position (2,)."""
-    parts = _parts(layer.features, feature, origin)
-    if layer.features.kind == "lines":
-        lines = [shapely.Point(part[0]) if len(part) == 1 else shapely.LineString(part) for part in parts]
-        half_width = float(layer.widths[feature]) / 2
-        return shapely.union_all(shapely.buffer(lines, half_width, quad_segs=QUARTER_SEGMENTS))
-    return _even_odd_area(layer, feature, parts, origin)
-
-
-def _even_odd_area(
-    layer: LayerLike, feature: int, rings: list[FloatArray], origin: FloatArray
-) -> shapely.Geometry:
-    """Even-odd area of rings that may cross, touch, overlap and repeat.
-
-    The rings' lines are cut at their crossings; each face between them lies inside or outside as a
-    whole, which one point of it tells.
-    """
-    closed = [shapely.LineString(np.concatenate([ring, ring[:1]])) for ring in rings if len(ring) > 1]
-    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(shapely.union_all(closed))))
-    if not len(faces):
-        return shapely.Polygon()
-    inside_points = shapely.get_coordinates(shapely.point_on_surface(faces)) + origin
-    only = np.arange(len(layer.features.rows)) == feature
-    inside = membership(layer, inside_points, only).inside(feature)
-    return shapely.union_all(faces[inside])
-
-
-def _parts(features: FeaturesLike, feature: int, origin: FloatArray) -> list[FloatArray]:
-    """Coordinates (n, 2) of the parts of one feature, relative to `origin`, empty ones left out."""
-    first, last = features.feature_offsets[feature], features.feature_offsets[feature + 1]
-    bounds = [(features.part_offsets[part], features.part_offsets[part + 1]) for part in range(first, last)]
-    return [np.asarray(features.coords[start:stop]) - origin for start, stop in bounds if stop > start]
 
 
 def _on_plane(view: Viewpoint, points: FloatArray, centre: Surface) -> FloatArray:

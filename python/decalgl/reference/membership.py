@@ -1,16 +1,8 @@
-"""Which features hold which points of the map, decided in float64.
+"""Which decals hold which points of the map, and in which colours, decided in float64.
 
-Polygons are even-odd over all rings of a feature: a point is inside when a ray towards +x crosses an
-odd number of edges. An edge counts for y_low <= y < y_high and is evaluated from its lower end
-whatever its direction, so a point on a border that two features share is inside exactly one of them.
-Lines hold the points whose distance to any of their segments is at most half the width.
-
-Points are cut into strips of equal counts along x and sorted by y within each:
-
-      strip        near edges overlap the strip in x: tested point by point over their y range.
-    |  . .  |  /   far edges lie right of the strip: each turns a run of sorted points over, which
-    | . /   | /    costs two events, not a test for every point.
-    |  / .  |/     Edges left of the strip are never crossed.
+Polygons are even-odd over all rings of a feature. Lines are closed sets: without other styles they hold the points
+whose distance to any of their segments is at most half the width. A gap in a dash or a hatch holds nothing, nor does
+a band of alpha 0.
 """
 
 from __future__ import annotations
@@ -20,229 +12,189 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .contract import BoolArray, FeaturesLike, FloatArray, IntArray, LayerLike, draw_ranks
+from .decals import FillDecals, StrokeDecals, decals_of
+from .fills import Edges, hatch_clearance, inside_polygons
+from .points import strips
+from .strokes import Slopes, StyledStroke, Touch, styled_strokes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Sequence
 
-# Pairs of an edge and a point that are held at once.
-PAIR_LIMIT = 2_000_000
-POINTS_PER_STRIP = 4096
-MOST_STRIPS = 64
+    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike
+    from .points import Strip
 
 
 @dataclass(frozen=True)
 class Membership:
-    """The features of each of n points, bottom to top in the layer's draw order.
+    """The decals of each of n points, bottom to top: (decals, ...) arrays, those of a point side by side.
 
-    offsets: (n + 1,); the features of point i are features[offsets[i]:offsets[i + 1]].
-    features: (pairs,) indices into the layer's feature table.
+    offsets: (n + 1,); the decals of point i are those from offsets[i] to offsets[i + 1].
+    features: indices into the layer's feature table. A fill and its outline are two decals of one feature.
+    colors: (decals, 4), premultiplied, 0..1: rows `tints` of a `palette`.
     """
 
     offsets: IntArray
     features: IntArray
+    tints: IntArray
+    palette: FloatArray
+
+    @property
+    def colors(self) -> FloatArray:
+        colors: FloatArray = self.palette[self.tints]
+        return colors
 
     def at(self, point: int) -> IntArray:
-        """Features that hold one point, bottom to top."""
+        """Features of the decals that hold one point, bottom to top."""
         return self.features[self.offsets[point] : self.offsets[point + 1]]
 
     def inside(self, feature: int) -> BoolArray:
-        """Mask (n,) of the points that one feature holds."""
+        """Mask (n,) of the points that any decal of one feature holds."""
         points = np.repeat(np.arange(len(self.offsets) - 1), np.diff(self.offsets))
         mask = np.zeros(len(self.offsets) - 1, dtype=np.bool_)
         mask[points[self.features == feature]] = True
         return mask
 
     def topmost(self) -> IntArray:
-        """Topmost feature (n,) of each point, -1 where there is none."""
+        """Feature (n,) of the topmost decal of each point, -1 where there is none."""
         top = np.full(len(self.offsets) - 1, -1, dtype=np.int64)
         filled = self.offsets[1:] > self.offsets[:-1]
         top[filled] = self.features[self.offsets[1:][filled] - 1]
         return top
 
 
-def membership(layer: LayerLike, xy: FloatArray, only: BoolArray | None = None) -> Membership:
-    """Features of a layer at map points xy (n, 2), metres; NaN points are in none.
+def membership(
+    layer: LayerLike, xy: FloatArray, only: BoolArray | None = None, slopes: Slopes | None = None
+) -> Membership:
+    """Decals of a layer at map points xy (n, 2), metres; NaN points are in none.
 
-    only: mask (features,) of the features to look at, all by default. Widths of lines are the
-    layer's, colours are not looked at.
+    only: mask (features,) of the features to look at, all by default. Decals of alpha 0 or width 0 are not drawn.
+    slopes: of the points, for strokes with slope correction; without them the ground is level.
     """
-    features = layer.features
-    count = len(features.rows)
-    segments = Segments.of(features)
-    if only is not None:
-        segments = segments[np.flatnonzero(only[segments.feature])]
-    half_widths = np.asarray(layer.widths, dtype=np.float64) / 2
-    segments = _in_range(segments, half_widths if features.kind == "lines" else None, xy)
-    ranks = draw_ranks(layer)
-    keys = []
-    for points in strips(xy):
-        if features.kind == "polygons":
-            pairs = _inside_polygons(segments, points)
-        else:
-            pairs = _inside_lines(segments, half_widths, points)
-        feature, rank = np.divmod(pairs, len(points.index))
-        keys.append(points.index[rank] * count + ranks[feature])
-    ordered = np.sort(np.concatenate(keys)) if keys else np.empty(0, dtype=np.int64)
-    point, rank = np.divmod(ordered, max(count, 1))
-    offsets = np.searchsorted(point, np.arange(len(xy) + 1)).astype(np.int64)
-    return Membership(offsets, np.asarray(layer.draw_order, dtype=np.int64)[rank])
-
-
-def _in_range(segments: Segments, half_widths: FloatArray | None, xy: FloatArray) -> Segments:
-    """The segments that can matter to any of the points: strokes near them, or edges beside them.
-
-    half_widths: (features,) of lines, None for polygons, whose edges count far to the right too.
-    """
-    places = xy[np.isfinite(xy).all(axis=1)]
-    if not len(places):
-        return segments
-    reach = 0.0 if half_widths is None else half_widths[segments.feature][:, None]
-    low, high = (
-        np.minimum(segments.start, segments.end) - reach,
-        np.maximum(segments.start, segments.end) + reach,
+    count = len(layer.features.rows)
+    finders = [_Finder(layer, decals, xy) for decals in decals_of(layer, only)]
+    points, places, features, tints = ([np.empty(0, dtype=np.int64)] for _ in range(4))
+    palette, first = [np.empty((0, 4))], 0
+    cut = list(strips(xy))
+    for finder in finders:
+        palette.append(finder.palette)
+        for strip in cut:
+            feature, rank, tint = finder.find(strip, None if slopes is None else slopes[strip.index])
+            points.append(strip.index[rank])
+            places.append(finder.decals.place[feature])
+            features.append(feature)
+            tints.append(tint + first)
+        first += len(finder.palette)
+    point = np.concatenate(points)
+    order = np.argsort(point * (2 * count) + np.concatenate(places))
+    offsets = np.searchsorted(point[order], np.arange(len(xy) + 1)).astype(np.int64)
+    return Membership(
+        offsets, np.concatenate(features)[order], np.concatenate(tints)[order], np.concatenate(palette)
     )
-    kept = (high >= places.min(axis=0)).all(axis=1) & (low[:, 1] <= places[:, 1].max())
-    if half_widths is not None:
-        kept &= low[:, 0] <= places[:, 0].max()
-    return segments[np.flatnonzero(kept)]
 
 
-@dataclass(frozen=True)
-class Segments:
-    """Segments of many features: start and end (segments, 2), feature (segments,)."""
+class _Finder:
+    """The decals of one run made ready to be looked up.
 
-    start: FloatArray
-    end: FloatArray
-    feature: IntArray
+    palette: (m, 4) premultiplied colours; one a feature, then those of bands.
+    """
 
-    @staticmethod
-    def of(features: FeaturesLike) -> Segments:
-        """Ring edges of polygons, closed implicitly, or the segments of lines.
+    def __init__(self, layer: LayerLike, decals: FillDecals | StrokeDecals, xy: FloatArray) -> None:
+        self.decals = decals
+        self.edges: Edges | None = None
+        self.strokes: list[StyledStroke] = []
+        if isinstance(decals, FillDecals) or decals.side != "normal":
+            self.edges = Edges.of(layer.features, decals.drawn).beside(xy)
+        if isinstance(decals, FillDecals):
+            colors = _straight(decals.fill.colors)
+            self.palette = _premultiplied(colors)
+            return
+        colors = _straight(decals.stroke.colors)
+        self.strokes = styled_strokes(layer.features, decals.stroke, decals.half_widths, decals.drawn)
+        palettes, self.bands_at = [colors], [0]
+        for stroke in self.strokes:
+            self.bands_at.append(sum(len(palette) for palette in palettes))
+            palettes.append(_band_colors(stroke.style.bands, colors))
+        self.palette = _premultiplied(np.concatenate(palettes))
 
-        A line of one point is a segment of length zero.
-        """
-        coords = np.asarray(features.coords, dtype=np.float64).reshape(-1, 2)
-        parts = np.asarray(features.part_offsets, dtype=np.int64)
-        first, lengths = parts[:-1], np.diff(parts)
-        filled = lengths > 0
-        owner = np.repeat(np.arange(len(features.rows)), np.diff(features.feature_offsets))
-        feature = np.repeat(owner, lengths)
-        following = np.arange(1, len(coords) + 1)
-        last = parts[1:][filled] - 1
-        following[last] = first[filled]
-        segments = Segments(coords, coords[following], feature)
-        if features.kind == "polygons":
-            return segments
-        keep = np.ones(len(coords), dtype=np.bool_)
-        keep[last[lengths[filled] > 1]] = False
-        return segments[np.flatnonzero(keep)]
-
-    def __getitem__(self, which: IntArray) -> Segments:
-        return Segments(self.start[which], self.end[which], self.feature[which])
-
-
-@dataclass(frozen=True)
-class Strip:
-    """Points (n,) between two x, sorted by y; index tells which points of the caller they are."""
-
-    x: FloatArray
-    y: FloatArray
-    index: IntArray
-
-
-def strips(xy: FloatArray) -> Iterator[Strip]:
-    """Cut finite points (n, 2) into strips of nearly equal counts."""
-    index = np.flatnonzero(np.isfinite(xy).all(axis=1))
-    if not len(index):
-        return
-    index = index[np.argsort(xy[index, 0], kind="stable")]
-    strip_count = int(np.clip(len(index) // POINTS_PER_STRIP, 1, MOST_STRIPS))
-    for part in np.array_split(index, strip_count):
-        ordered = part[np.argsort(xy[part, 1], kind="stable")]
-        yield Strip(xy[ordered, 0], xy[ordered, 1], ordered)
+    def find(self, points: Strip, slopes: Slopes | None) -> tuple[IntArray, IntArray, IntArray]:
+        """Pairs that are drawn: feature, rank of the point in the strip, row of the palette."""
+        count = len(points.index)
+        if isinstance(self.decals, FillDecals):
+            assert self.edges is not None
+            feature, rank = np.divmod(inside_polygons(self.edges, points), count)
+            kept = _hatched(self.decals, feature, np.stack([points.x[rank], points.y[rank]], axis=1))
+            return feature[kept], rank[kept], feature[kept]
+        keys, tints = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+        for stroke, first in zip(self.strokes, self.bands_at[1:], strict=True):
+            key, share = covered_pairs(stroke, points, slopes)
+            keys.append(key)
+            feature, bands = key // count, stroke.style.bands
+            if bands:
+                band = np.searchsorted([band.reach for band in bands], share, side="left")
+                tints.append(first + feature * len(bands) + np.minimum(band, len(bands) - 1))
+            else:
+                tints.append(feature)
+        key, tint = np.concatenate(keys), np.concatenate(tints)
+        kept = self.palette[tint, 3] > 0.0
+        if self.edges is not None:
+            kept &= np.isin(key, inside_polygons(self.edges, points)) == (self.decals.side == "inset")
+        feature, rank = np.divmod(key[kept], count)
+        return feature, rank, tint[kept]
 
 
-def candidate_pairs(first: IntArray, last: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
-    """All (i, j) with first[i] <= j < last[i], in batches of about PAIR_LIMIT."""
-    counts = np.maximum(last - first, 0)
-    ends = np.cumsum(counts)
-    total = int(ends[-1]) if len(ends) else 0
-    start = done = 0
-    while done < total:
-        stop = max(int(np.searchsorted(ends, done + PAIR_LIMIT, side="right")), start + 1)
-        batch = counts[start:stop]
-        owner = np.repeat(np.arange(start, stop), batch)
-        shift = np.repeat(first[start:stop] - (np.cumsum(batch) - batch), batch)
-        yield owner, np.arange(len(owner)) + shift
-        start, done = stop, int(ends[stop - 1])
+def covered_pairs(stroke: StyledStroke, points: Strip, slopes: Slopes | None) -> tuple[IntArray, FloatArray]:
+    """Ascending keys feature * n + point of the points that strokes cover, and gauge over half width of each."""
+    keys, shares = [np.empty(0, dtype=np.int64)], [np.empty(0)]
+    for touch in stroke.touching(points, slopes):
+        key, share = _nearest(_covered(touch, len(points.index)))
+        keys.append(key)
+        shares.append(share)
+    return _nearest((np.concatenate(keys), np.concatenate(shares)))
 
 
-def segment_distance(x: FloatArray, y: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Distance (n,) of points (x, y) to segments start, end (n, 2), pair by pair."""
-    along_x, along_y = end[:, 0] - start[:, 0], end[:, 1] - start[:, 1]
-    from_x, from_y = x - start[:, 0], y - start[:, 1]
-    length_squared = along_x * along_x + along_y * along_y
-    with np.errstate(invalid="ignore", divide="ignore"):
-        position = (from_x * along_x + from_y * along_y) / length_squared
-    position = np.where(length_squared > 0, np.clip(position, 0.0, 1.0), 0.0)
-    return np.hypot(from_x - position * along_x, from_y - position * along_y)
+def _covered(touch: Touch, count: int) -> tuple[IntArray, FloatArray]:
+    kept = np.flatnonzero(touch.clearance >= 0.0)
+    key: IntArray = touch.feature[kept] * count + touch.point[kept]
+    return key, touch.gauge[kept] / touch.half_width[kept]
 
 
-def _inside_lines(segments: Segments, half_widths: FloatArray, points: Strip) -> IntArray:
-    """Keys feature * n + point of the points no farther from lines than half their width."""
-    reach = half_widths[segments.feature]
-    x = np.sort(np.stack([segments.start[:, 0], segments.end[:, 0]]), axis=0)
-    y = np.sort(np.stack([segments.start[:, 1], segments.end[:, 1]]), axis=0)
-    near = np.flatnonzero((x[0] - reach <= points.x.max()) & (x[1] + reach >= points.x.min()))
-    segments, reach = segments[near], reach[near]
-    first = np.searchsorted(points.y, y[0, near] - reach, side="left")
-    last = np.searchsorted(points.y, y[1, near] + reach, side="right")
-    keys = [np.empty(0, dtype=np.int64)]
-    for owner, point in candidate_pairs(first, last):
-        x_of, y_of = points.x[point], points.y[point]
-        close = segment_distance(x_of, y_of, segments.start[owner], segments.end[owner]) <= reach[owner]
-        keys.append(np.unique(segments.feature[owner[close]] * len(points.y) + point[close]))
-    return np.unique(np.concatenate(keys))
+def _nearest(pairs: tuple[IntArray, FloatArray]) -> tuple[IntArray, FloatArray]:
+    """Distinct keys, ascending, and the least share of each."""
+    key, share = pairs
+    order = np.argsort(key, kind="stable")
+    key, share = key[order], share[order]
+    first = np.flatnonzero(np.diff(key, prepend=-1))
+    return key[first], np.minimum.reduceat(share, first) if len(first) else share
 
 
-def _inside_polygons(segments: Segments, points: Strip) -> IntArray:
-    """Keys feature * n + point of the points inside polygons, even-odd."""
-    upward = segments.start[:, 1] < segments.end[:, 1]
-    low = np.where(upward[:, None], segments.start, segments.end)
-    high = np.where(upward[:, None], segments.end, segments.start)
-    first = np.searchsorted(points.y, low[:, 1], side="left")
-    last = np.searchsorted(points.y, high[:, 1], side="left")
-    left, right = np.minimum(low[:, 0], high[:, 0]), np.maximum(low[:, 0], high[:, 0])
-    crossed = (first < last) & (right >= points.x.min())
-    far = np.flatnonzero(crossed & (left > points.x.max()))
-    near = np.flatnonzero(crossed & (left <= points.x.max()))
-    keys = [_beyond_strip(segments.feature[far], first[far], last[far], len(points.y))]
-    low, high, feature = low[near], high[near], segments.feature[near]
-    for owner, point in candidate_pairs(first[near], last[near]):
-        side = (high[owner, 0] - low[owner, 0]) * (points.y[point] - low[owner, 1]) - (
-            points.x[point] - low[owner, 0]
-        ) * (high[owner, 1] - low[owner, 1])
-        crossing = side > 0
-        keys.append(_odd(feature[owner[crossing]] * len(points.y) + point[crossing]))
-    return _odd(np.concatenate(keys))
+def _hatched(decals: FillDecals, feature: IntArray, xy: FloatArray) -> BoolArray:
+    """Which of the pairs (n,) of a feature and a point inside lie on its fill."""
+    on = np.ones(len(feature), dtype=np.bool_)
+    hatch_of = hatches_of(decals)
+    for index, hatch in enumerate(decals.fill.hatches):
+        if hatch is not None:
+            some = np.flatnonzero(hatch_of[feature] == index)
+            on[some] = hatch_clearance(hatch, xy[some]) >= 0.0
+    return on
 
 
-def _beyond_strip(feature: IntArray, first: IntArray, last: IntArray, count: int) -> IntArray:
-    """Keys feature * count + point with an odd number of edges over them, each from first to last."""
-    stride = count + 1
-    events = _odd(np.concatenate([feature * stride + first, feature * stride + last]))
-    # Every edge has two events of its feature, so the rest pair up within features too.
-    owner, start = np.divmod(events[0::2], stride)
-    stop = events[1::2] - owner * stride
-    lengths = stop - start
-    shift = np.repeat(owner * count + start - (np.cumsum(lengths) - lengths), lengths)
-    inside: IntArray = np.arange(len(shift)) + shift
-    return inside
+def hatches_of(decals: FillDecals) -> IntArray:
+    """Each feature's place (features,) among the hatches."""
+    if decals.fill.hatch_of is None:
+        return np.zeros(len(decals.drawn), dtype=np.int64)
+    return np.asarray(decals.fill.hatch_of, dtype=np.int64)
 
 
-def _odd(keys: IntArray) -> IntArray:
-    """Distinct keys, ascending, of those that occur an odd number of times."""
-    distinct, counts = np.unique(keys, return_counts=True)
-    odd: IntArray = distinct[counts % 2 == 1]
-    return odd
+def _straight(colors: object) -> FloatArray:
+    return np.asarray(colors, dtype=np.float64).reshape(-1, 4) / 255
+
+
+def _premultiplied(colors: FloatArray) -> FloatArray:
+    return np.concatenate([colors[:, :3] * colors[:, 3:], colors[:, 3:]], axis=1)
+
+
+def _band_colors(bands: Sequence[BandLike], own: FloatArray) -> FloatArray:
+    """Straight colours (features * bands, 4): those of the bands under the alpha of each feature."""
+    colors = np.tile(_straight([band.color for band in bands]), (len(own), 1))
+    colors[:, 3] *= np.repeat(own[:, 3], len(bands))
+    return colors

@@ -12,23 +12,25 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .contract import (
-    BoolArray,
-    CameraLike,
-    Crop,
-    FloatArray,
-    IntArray,
-    LayerLike,
-    SceneLike,
-    Size,
-    visible_features,
-)
+from .decals import follows_slopes
 from .edges import edge_distance
 from .membership import membership
 from .rays import RayCaster, Surface, Viewpoint, pixel_centres, raycast, viewpoint
+from .strokes import Slopes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from .contract import (
+        BoolArray,
+        CameraLike,
+        Crop,
+        FloatArray,
+        IntArray,
+        LayerLike,
+        SceneLike,
+        Size,
+    )
 
 # Sub-positions that are worked on at once.
 BATCH = 1_000_000
@@ -83,33 +85,42 @@ def render_ids(
     if surface is None:
         surface = raycast(scene, camera, size, pixel_centres((x0, y0, x1, y1)))
     xy = surface.world[..., :2].reshape(-1, 2)
+    slopes = slopes_of(scene, camera, size, surface)
     ids, layers = np.full(len(xy), -1, dtype=np.int64), np.full(len(xy), -1, dtype=np.int32)
     for index, layer in enumerate(scene.layers):
-        top = membership(layer, xy, visible_features(layer)).topmost()
+        top = membership(layer, xy, slopes=slopes).topmost()
         drawn = top >= 0
         ids[drawn] = np.asarray(layer.features.rows, dtype=np.int64)[top[drawn]]
         layers[drawn] = index
-    edges = edge_distance(scene, xy, limit) if distances else np.full(len(xy), np.nan)
+    edges = edge_distance(scene, xy, limit, slopes) if distances else np.full(len(xy), np.nan)
     return Ids(ids.reshape(shape), layers.reshape(shape), edges.reshape(shape))
 
 
-def composite(scene: SceneLike, xy: FloatArray) -> FloatArray:
+def slopes_of(scene: SceneLike, camera: CameraLike, size: Size, surface: Surface) -> Slopes | None:
+    """What slope correction needs at the positions of a surface, flattened; None where no style asks for it."""
+    if not follows_slopes(scene):
+        return None
+    gradient = surface.gradient.reshape(-1, 2)
+    if np.isnan(gradient[np.isfinite(surface.world.reshape(-1, 3)[:, 0])]).any():
+        raise ValueError("The surface has no gradients, and the scene has strokes with slope correction.")
+    return Slopes(gradient, viewpoint(camera, size).forward)
+
+
+def composite(scene: SceneLike, xy: FloatArray, slopes: Slopes | None = None) -> FloatArray:
     """Premultiplied colour (n, 4), 0..1, of all features "over" one another at map points (n, 2)."""
     result = np.zeros((len(xy), 4))
     for layer in scene.layers:
-        _composite_layer(result, layer, xy)
+        _composite_layer(result, layer, xy, slopes)
     return result
 
 
-def _composite_layer(result: FloatArray, layer: LayerLike, xy: FloatArray) -> None:
-    held = membership(layer, xy, visible_features(layer))
-    colors = np.asarray(layer.colors, dtype=np.float64).reshape(-1, 4) / 255
-    colors[:, :3] *= colors[:, 3:]
+def _composite_layer(result: FloatArray, layer: LayerLike, xy: FloatArray, slopes: Slopes | None) -> None:
+    held = membership(layer, xy, slopes=slopes)
     depths = np.diff(held.offsets)
     active = np.flatnonzero(depths > 0)
     level = 0
     while len(active):
-        source = colors[held.features[held.offsets[active] + level]]
+        source = held.palette[held.tints[held.offsets[active] + level]]
         result[active] = source + result[active] * (1 - source[:, 3:])
         level += 1
         active = active[depths[active] > level]
@@ -159,7 +170,8 @@ def render_overlay(
     x0, y0, x1, y1 = crop or (0, 0, *size)
     if x1 <= x0 or y1 <= y0:
         raise ValueError(f"The crop {(x0, y0, x1, y1)} holds no pixels.")
-    caster = None if surface is not None else RayCaster(scene, camera, size)
+    planes = follows_slopes(scene)
+    caster = RayCaster(scene, camera, size) if surface is None or planes else None
     view = viewpoint(camera, size)
     rows = max(1, BATCH // ((x1 - x0) * samples * samples))
     bands = []
@@ -171,17 +183,27 @@ def render_overlay(
         else:
             assert caster is not None
             seen = caster.cast(points.reshape(-1, 2)).reshape(*points.shape[:4])
-        bands.append(_filter_band(scene, view, points, seen))
+        gradients = caster.cast(pixel_centres(band)).gradient if caster is not None and planes else None
+        bands.append(_filter_band(scene, view, points, seen, gradients))
     return Overlay(*(np.concatenate(parts) for parts in zip(*bands, strict=True)))
 
 
 def _filter_band(
-    scene: SceneLike, view: Viewpoint, points: FloatArray, seen: Surface
+    scene: SceneLike, view: Viewpoint, points: FloatArray, seen: Surface, gradients: FloatArray | None
 ) -> tuple[FloatArray, BoolArray, FloatArray, BoolArray]:
-    """The members of an Overlay for sub-positions (h, w, s, s, 2) and what they see."""
+    """The members of an Overlay for sub-positions (h, w, s, s, 2) and what they see.
+
+    gradients: (h * w, 2) of the ground at pixel centres, which slopes are those of all of the pixel.
+    """
     height, width, samples = points.shape[:3]
     hit = np.isfinite(seen.depth)
-    colors = composite(scene, seen.world[..., :2].reshape(-1, 2))
+    slopes = None
+    if gradients is not None:
+        gradients = np.repeat(gradients, samples * samples, axis=0)
+        # Where the centre sees sky, each place has its own.
+        gradients = np.where(np.isnan(gradients), seen.gradient.reshape(-1, 2), gradients)
+        slopes = Slopes(gradients, view.forward)
+    colors = composite(scene, seen.world[..., :2].reshape(-1, 2), slopes)
     colors = colors.reshape(height, width, samples * samples, 4)
     varied = (colors != colors[:, :, :1]).any(axis=(2, 3))
     terrain = hit.mean(axis=(2, 3))

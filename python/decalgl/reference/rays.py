@@ -46,7 +46,8 @@ class Viewpoint:
     """A camera for one picture size: ray(x, y) = origin + x*origin_x + y*origin_y, direction likewise.
 
     Every member is a vector (3,): `origin_x` is the change of the ray's origin in metres for one pixel
-    to the right, and so on. Perspective cameras move the direction only, orthographic ones the origin.
+    to the right, and so on. Perspective cameras move the direction only, orthographic ones the origin. `forward` is
+    the unit view direction.
     """
 
     origin: FloatArray
@@ -56,6 +57,7 @@ class Viewpoint:
     direction_x: FloatArray
     direction_y: FloatArray
     orthographic: bool
+    forward: FloatArray
 
     def rays(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Origins and directions (n, 3) through picture positions (n, 2) in pixels."""
@@ -86,8 +88,8 @@ def viewpoint(camera: CameraLike, size: Size) -> Viewpoint:
     step_x, step_y = right * (2 * half_width / width), up * (-2 * half_height / height)
     zero = np.zeros(3)
     if camera.fov is None:
-        return Viewpoint(eye + corner, step_x, step_y, forward, zero, zero, True)
-    return Viewpoint(eye, zero, zero, forward + corner, step_x, step_y, False)
+        return Viewpoint(eye + corner, step_x, step_y, forward, zero, zero, True, forward)
+    return Viewpoint(eye, zero, zero, forward + corner, step_x, step_y, False, forward)
 
 
 def pixel_centres(crop: Crop) -> FloatArray:

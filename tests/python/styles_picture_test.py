@@ -1,0 +1,136 @@
+"""Every scene of styles against the reference: ids and colours at pixel centres, coverage over pixels' areas.
+
+Each style meets each index and each anti-aliasing, and each index each anti-aliasing, in half the combinations.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+import decalgl as dg
+import judge
+import styles
+from decalgl import reference as ref
+from shapes import with_features
+
+if TYPE_CHECKING:
+    from scenes import View
+
+INDEXES = ("grid", "bvh")
+# Without anti-aliasing, and with coverage, each in one index, which take turns.
+EXACT = [(name, INDEXES[i % 2]) for i, name in enumerate(styles.STYLES)]
+FILTERED = [(name, INDEXES[1 - i % 2]) for i, name in enumerate(styles.STYLES)]
+# Metres that rounding moves a vertex or a position, in quanta: half of one, twice where a cell's border cuts an edge,
+# and as much again for what the shaders compute in 32 bits.
+QUANTA = 2.0
+# Steps of 1/255 that colours may be off: the published index blends a pass at a time into bytes.
+STEPS = {"grid": 1.01, "bvh": 2.1}
+# Crops whose coverage is judged: at its own 32 places in a pixel, and over the area by some samples a pixel each way.
+WIDE_CROP = (160, 90)
+CROP, SAMPLES = (80, 45), 16
+# Over the partly covered pixels of a crop. Of 32 places with the right answers 0.024 and 0.08 remain on opaque edges.
+RMS, P99 = 0.03, 0.09
+# The lack of alpha where a pixel is covered all over.
+LEAK = 0.02
+
+
+@functools.cache
+def renderer(index: str) -> dg.Renderer:
+    """One renderer for each index; it draws every sample of the terrain."""
+    return dg.Renderer(terrain_error=0.0, index=index)
+
+
+def reach(frame: dg.Frame) -> float:
+    """Metres, and no less than how exact positions are."""
+    return max(judge.LEAST, QUANTA * float(frame.stats.counts["quantum_m"]))
+
+
+@pytest.mark.parametrize(("name", "index"), EXACT)
+def test_ids_are_right(name: str, index: str) -> None:
+    view = styles.build(name)
+    frame = judge.draw(renderer(index), view)
+    assert (frame.ids >= 0).mean() > 0.02
+    wrong, unexplained = judge.unexplained_ids(view, frame, reach(frame))
+    assert unexplained == 0
+    assert wrong <= 2e-3 * frame.ids.size
+
+
+@pytest.mark.parametrize(("name", "index"), EXACT)
+def test_without_antialiasing_a_pixel_is_the_composite_at_its_centre(name: str, index: str) -> None:
+    view = styles.build(name)
+    frame = judge.draw(renderer(index), view)
+    overlay = judge.overlay_of(renderer(index), view, "none")
+    wrong, unexplained = judge.unexplained_colors(view, frame, overlay, reach(frame), STEPS[index])
+    assert unexplained == 0
+    assert wrong <= 4e-3 * frame.ids.size
+
+
+@pytest.mark.parametrize(("name", "index"), FILTERED)
+def test_coverage_is_right_at_each_of_its_places(name: str, index: str) -> None:
+    view = styles.build(name)
+    frame = judge.draw(renderer(index), view)
+    x0, y0, x1, y1 = crop = judge.busiest_crop(frame, WIDE_CROP)
+    expected = judge.coverage_of_samples(view, frame, crop)
+    got = judge.overlay_of(renderer(index), view, "coverage")[y0:y1, x0:x1]
+    ground = np.isfinite(frame.depth[y0:y1, x0:x1])
+    difference = np.abs(got - expected).max(axis=-1)[ground]
+    # A place within a quantum of an edge may fall to either side, and few pixels have two of those.
+    assert (difference > STEPS[index] / 255).mean() <= 0.005
+    assert difference.max() <= 3.1 / 32
+
+
+@pytest.mark.parametrize(("name", "index"), FILTERED)
+def test_coverage_is_the_mean_over_the_pixel(name: str, index: str) -> None:
+    view = styles.build(name)
+    x0, y0, x1, y1 = crop = judge.busiest_crop(judge.draw(renderer(index), view), CROP)
+    surface = ref.sample_surface(view.scene, view.camera, view.size, crop, SAMPLES)
+    expected = ref.render_overlay(view.scene, view.camera, view.size, crop, SAMPLES, surface=surface)
+    got = judge.overlay_of(renderer(index), view, "coverage")[y0:y1, x0:x1]
+    ignored = expected.mixed | (expected.terrain_fraction < 1.0) | judge.folded(view, crop, surface, SAMPLES)
+    found = ref.compare_overlay(got, expected, ignore=ignored)
+    assert found.partial >= 100
+    assert found.rms <= RMS, found
+    assert found.p99 <= P99, found
+    assert found.leak <= LEAK, found
+
+
+# The judge
+
+
+@dataclass
+class Rounded:
+    """What a renderer without a fault would draw of vertices rounded to a lattice."""
+
+    world: judge.FloatArray
+    depth: judge.FloatArray
+    ids: judge.IntArray
+    layers: judge.IntArray
+
+
+def rounded(view: View, quantum: float) -> Rounded:
+    tables = [
+        dataclasses.replace(
+            layer.features, coords=np.round(np.asarray(layer.features.coords) / quantum) * quantum
+        )
+        for layer in view.scene.layers
+    ]
+    seen = ref.raycast(view.scene, view.camera, view.size)
+    scene = with_features(view.scene, tables)
+    found = ref.render_ids(scene, view.camera, view.size, surface=seen, distances=False)
+    return Rounded(seen.world, seen.depth, found.ids, found.layers)
+
+
+@pytest.mark.parametrize("name", ["caps_and_corners", "short_segments", "dashes_around_corners"])
+def test_rounding_explains_what_it_does_and_no_more(name: str) -> None:
+    view = styles.build(name)
+    quantum = 2.0**-9
+    wrong, unexplained = judge.unexplained_ids(view, rounded(view, quantum), QUANTA * quantum)
+    assert wrong > 0
+    assert unexplained == 0
+    assert judge.unexplained_ids(view, rounded(view, 10 * quantum), QUANTA * quantum)[1] > 10

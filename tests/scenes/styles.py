@@ -1,0 +1,616 @@
+"""Scenes of styles, by name: `build("corner_angles")` is a view whose layers were made without styling keywords.
+
+    ordinary    every corner, cap, pattern, band, casing, outline and hatch
+    hostile     reversals, short segments under wide strokes, outlines wider than their polygons, dashes below a
+                pixel, crossing translucent lines, steep ground
+
+They are built once and kept: do not add layers to them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+import decalgl as dg
+from decalgl.strokes import (
+    ColorBand,
+    Fill,
+    HatchPattern,
+    LinePattern,
+    PatternMark,
+    Stroke,
+    StrokeStyle,
+)
+from scenes import View
+from shapes import circle, flat_terrain, nested_rings, partition, rings, star, tints, uneven_terrain, walk
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+    Kind = Literal["polygons", "lines"]
+
+SIZE = (320, 180)
+# Half the ground that a picture of `SIZE` shows from above, metres: two pixels a metre.
+HALF = (80.0, 45.0)
+CORNERS = ("round", "miter", "bevel")
+CAPS = ("round", "butt", "square")
+MODES = ("normal", "inset", "offset")
+STYLES: dict[str, Callable[[], View]] = {}
+
+
+def build(name: str) -> View:
+    """The view of that name; `STYLES` lists them."""
+    return STYLES[name]()
+
+
+def _named(make: Callable[[], View]) -> Callable[[], View]:
+    kept = functools.cache(make)
+    STYLES[make.__name__] = kept
+    return kept
+
+
+# Builders
+
+
+def _bytes(count: int, color: Any) -> NDArray[np.uint8]:
+    """Colours (count, 4) of one (R, G, B[, A]) from 0 to 1, or of one a feature."""
+    given = np.asarray(color, dtype=np.float64)
+    if given.shape[-1] == 3:
+        given = np.concatenate([given, np.ones((*given.shape[:-1], 1))], axis=-1)
+    return np.rint(255 * np.broadcast_to(given, (count, 4))).astype(np.uint8)
+
+
+def stroke(
+    count: int,
+    width: Any,
+    color: Any,
+    styles: StrokeStyle | Sequence[StrokeStyle] | None = None,
+    style_of: Any = None,
+) -> Stroke:
+    """Strokes of `count` features: one width and colour for all or one each; several styles go round by turns."""
+    found = (styles,) if isinstance(styles, StrokeStyle) else tuple(styles or (StrokeStyle(),))
+    if style_of is None and len(found) > 1:
+        style_of = np.arange(count) % len(found)
+    return Stroke(
+        _bytes(count, color),
+        np.broadcast_to(np.asarray(width, dtype=np.float64), (count,)).copy(),
+        found,
+        None if style_of is None else np.asarray(style_of, dtype=np.uint32),
+    )
+
+
+def fill(count: int, color: Any, hatches: Sequence[HatchPattern | None] | None = None) -> Fill:
+    """Fills of `count` features: one colour for all or one each; several hatches go round by turns."""
+    if hatches is None:
+        return Fill(_bytes(count, color))
+    return Fill(_bytes(count, color), tuple(hatches), np.arange(count, dtype=np.uint32) % len(hatches))
+
+
+def styled(
+    scene: dg.Scene,
+    kind: Kind,
+    geometry: list[list[FloatArray]],
+    *,
+    fill: Fill | None = None,
+    stroke: Stroke | None = None,
+    casing: Stroke | None = None,
+    outline_mode: str = "normal",
+    outline_order: str = "layer",
+    order: Any = "feature",
+) -> dg.Layer:
+    """Adds a layer of resolved styles: features, each a list of parts (n, 2)."""
+    table = rings(geometry, kind)
+    if kind == "polygons":
+        plain = scene.add_polygons(table, order=order)
+    else:
+        plain = scene.add_lines(table, width=1.0, width_units="m", order=order)
+    changes: dict[str, Any] = {
+        "fill": fill,
+        "stroke": stroke,
+        "casing": casing,
+        "outline_mode": outline_mode,
+        "outline_order": outline_order,
+    }
+    layer = dataclasses.replace(plain, **changes)
+    scene._layers[-1] = layer
+    return layer
+
+
+def above(scene: dg.Scene, x: float = 0.0, y: float = 0.0) -> View:
+    """Straight down on the ground around a place, two pixels a metre."""
+    bounds = (x - HALF[0], y - HALF[1], x + HALF[0], y + HALF[1])
+    return View(scene, dg.Camera.top_down(bounds), SIZE)
+
+
+def aslant(scene: dg.Scene, distance: float = 130.0, elevation: float = 35.0) -> View:
+    return View(scene, dg.Camera.orbit((0.0, 0.0, 0.0), distance, 200.0, elevation), SIZE)
+
+
+def flat_ground() -> dg.Scene:
+    return dg.Scene(flat_terrain(100.0))
+
+
+def grid(columns: int, rows: int) -> FloatArray:
+    """Places (rows, columns, 2) over the picture, row 0 at the top, off the middle of pixels."""
+    x = HALF[0] * (2 * np.arange(columns) + 1.013 - columns) / columns
+    y = HALF[1] * (rows - 1.017 - 2 * np.arange(rows)) / rows
+    return np.stack(np.meshgrid(x, y), axis=-1)
+
+
+def dashes(period: float, *marks: tuple[float, ...], offset: float = 0.0) -> LinePattern:
+    """A pattern of marks (begin, end[, begin_width, end_width]) in metres."""
+    return LinePattern(period, tuple(PatternMark(*mark) for mark in marks), offset)
+
+
+def bend(at: FloatArray, turn: float, arm: float, heading: float = 25.0) -> FloatArray:
+    """Two segments that meet at a place with a turn in degrees; 180 comes back exactly."""
+    into = np.radians(heading)
+    start = at - arm * np.array([np.cos(into), np.sin(into)])
+    if turn == 180.0:
+        return np.array([start, at, start])
+    if turn == 0.0:
+        return np.array([start, at, at + (at - start)])
+    out = into + np.radians(turn)
+    return np.array([start, at, at + arm * np.array([np.cos(out), np.sin(out)])])
+
+
+BANDS = (
+    ColorBand(0.2, (250, 240, 40, 255)),
+    ColorBand(0.45, (30, 30, 30, 128)),
+    ColorBand(0.5, (255, 255, 255, 255)),
+    ColorBand(1.0, (200, 40, 40, 200)),
+)
+TEAL, BROWN, GREY = (0.1, 0.5, 0.5), (0.5, 0.3, 0.1), (0.3, 0.3, 0.35)
+
+
+# Plain
+
+
+@_named
+def plain() -> View:
+    """Fills and round strokes alone, some of them translucent."""
+    scene = flat_ground()
+    cells = [[np.asarray(cell.exterior.coords)[:-1]] for cell in partition((-70, -40, 70, 40), 9, 6)]
+    styled(scene, "polygons", cells, fill=fill(54, tints(54, 3)))
+    generator = np.random.default_rng(4)
+    found = [[walk(generator, generator.uniform(-60, 60, 2) * (1, 0.5), 5.0, 15)] for _ in range(20)]
+    styled(scene, "lines", found, stroke=stroke(20, np.linspace(0.3, 6.0, 20), tints(20, 5, (0.3, 1.0))))
+    return above(scene)
+
+
+# Corners and caps
+
+
+@_named
+def corner_angles() -> View:
+    """Every corner at turns from none to an exact reversal, to both sides."""
+    scene = flat_ground()
+    turns = np.linspace(0.0, 180.0, 13)
+    places = grid(13, 6)
+    features = [
+        [bend(places[row, column], turn if row % 2 == 0 else -turn, 4.5)]
+        for row in range(6)
+        for column, turn in enumerate(turns)
+    ]
+    styles = [StrokeStyle(corner, "butt") for corner in CORNERS]
+    of = np.repeat(np.arange(6) // 2, 13)
+    styled(scene, "lines", features, stroke=stroke(78, 3.0, tints(78, 11), styles, of))
+    return above(scene)
+
+
+@_named
+def miter_limits() -> View:
+    """Sharp corners below, at and above their limits, which are angles between the segments."""
+    scene = flat_ground()
+    places = grid(10, 4)
+    limits = (5.0, 20.0, 55.0, 100.0)
+    features = [
+        [bend(places[row, column] - (3.0, 0.0), 180.0 - opening, 6.0)]
+        for row in range(4)
+        for column, opening in enumerate((3.0, 8.0, 17.0, 23.0, 40.0, 53.0, 57.0, 90.0, 97.0, 103.0))
+    ]
+    styles = [StrokeStyle("miter", "butt", miter_limit=limit) for limit in limits]
+    styled(
+        scene, "lines", features, stroke=stroke(40, 1.5, tints(40, 12), styles, np.repeat(np.arange(4), 10))
+    )
+    return above(scene)
+
+
+@_named
+def caps_and_corners() -> View:
+    """Zigzags of every corner with every cap."""
+    scene = flat_ground()
+    places = grid(3, 3)
+    zigzag = np.array(
+        [(-22.0, -6.0), (-15.0, 7.0), (-9.0, -7.0), (0.0, -7.0), (9.0, 6.0), (12.0, -8.0), (22.0, 3.0)]
+    )
+    features = [[places[row, column] + zigzag] for row in range(3) for column in range(3)]
+    styles = [StrokeStyle(corner, cap) for corner in CORNERS for cap in CAPS]
+    styled(scene, "lines", features, stroke=stroke(9, 5.0, tints(9, 13, 0.6), styles))
+    return above(scene)
+
+
+@_named
+def short_segments() -> View:
+    """Wide strokes over segments much shorter than they are wide: arcs, spirals and crooked ends."""
+    scene = flat_ground()
+    places = grid(6, 3)
+    generator = np.random.default_rng(14)
+    features = []
+    for row in range(3):
+        for column in range(6):
+            if column < 3:
+                angle = np.linspace(0.0, 5.0, 90)
+                shape = (2.0 + 1.5 * column) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            else:
+                shape = walk(generator, np.zeros(2), 0.25 * (column - 2), 24)
+            features.append([places[row, column] + shape])
+    styles = [StrokeStyle(corner, "butt") for corner in CORNERS]
+    styled(
+        scene, "lines", features, stroke=stroke(18, 8.0, tints(18, 15), styles, np.repeat(np.arange(3), 6))
+    )
+    return above(scene)
+
+
+@_named
+def dots() -> View:
+    """Lines of one vertex, repeated or not, of no length and nearly none, with every cap."""
+    scene = flat_ground()
+    places = grid(8, 3)
+    features = [
+        [np.repeat(places[row, column][None], 1 + column % 3, axis=0)]
+        for row in range(3)
+        for column in range(8)
+    ]
+    styles = [StrokeStyle(cap=cap) for cap in CAPS]
+    widths = np.tile(np.geomspace(0.2, 18.0, 8), 3)
+    styled(
+        scene,
+        "lines",
+        features,
+        stroke=stroke(24, widths, tints(24, 16, 0.7), styles, np.repeat(np.arange(3), 8)),
+    )
+    return above(scene)
+
+
+@_named
+def closed_lines() -> View:
+    """Lines that end where they began have a corner there; those of two segments have caps."""
+    scene = flat_ground()
+    places = grid(6, 3)
+    features = []
+    for row in range(3):
+        for column in range(6):
+            ring = circle(0.0, 0.0, 9.0, 3 + column, 0.3)
+            if column == 5:
+                ring = np.array([(-8.0, -3.0), (8.0, 5.0)])
+            features.append([places[row, column] + np.concatenate([ring, ring[:1]])])
+    styles = [
+        StrokeStyle(corner, cap) for corner, cap in zip(CORNERS, ("square", "butt", "square"), strict=True)
+    ]
+    styled(
+        scene, "lines", features, stroke=stroke(18, 4.0, tints(18, 17), styles, np.repeat(np.arange(3), 6))
+    )
+    return above(scene)
+
+
+# Composition
+
+
+@_named
+def crossing_lines() -> View:
+    """Translucent lines that cross themselves and one another: each is one coat of paint."""
+    scene = flat_ground()
+    generator = np.random.default_rng(18)
+    features = [[star(x, y, 24.0, 7, 0.2)] for x in (-45.0, 0.0, 45.0) for y in (-12.0, 12.0)]
+    features += [[walk(generator, generator.uniform(-30, 30, 2), 4.0, 40)] for _ in range(6)]
+    styles = [StrokeStyle(corner, cap) for corner, cap in zip(CORNERS, CAPS, strict=True)]
+    styled(scene, "lines", features, stroke=stroke(12, 5.0, tints(12, 19, 0.4), styles))
+    return above(scene)
+
+
+@_named
+def casings() -> View:
+    """Casings of all lines lie under all strokes, and show through translucent ones."""
+    scene = flat_ground()
+    generator = np.random.default_rng(20)
+    features = [[walk(generator, generator.uniform(-60, 60, 2) * (1, 0.5), 7.0, 14)] for _ in range(14)]
+    widths = np.linspace(2.0, 6.0, 14)
+    inner = stroke(14, widths, tints(14, 21, (0.3, 0.8)), StrokeStyle("miter", "butt"))
+    outer = stroke(14, widths + 2.0, (0.1, 0.1, 0.1, 0.7), StrokeStyle("round", "butt"))
+    styled(scene, "lines", features, stroke=inner, casing=outer)
+    return aslant(scene)
+
+
+@_named
+def bands() -> View:
+    """Colours across lines with corners and caps of every kind, under the lines' own alpha."""
+    scene = flat_ground()
+    places = grid(3, 3)
+    hook = np.array([(-20.0, -4.0), (-4.0, -4.0), (2.0, 6.0), (12.0, 6.0), (6.0, -5.0), (20.0, -5.0)])
+    features = [[places[row, column] + hook] for row in range(3) for column in range(3)]
+    styles = [StrokeStyle(corner, cap, bands=BANDS) for corner in CORNERS for cap in CAPS]
+    colors = np.tile((0.0, 0.0, 0.0, 1.0), (9, 1))
+    colors[::2, 3] = 0.6
+    styled(scene, "lines", features, stroke=stroke(9, 8.0, colors, styles))
+    return above(scene)
+
+
+@_named
+def many_styles() -> View:
+    """A layer whose features differ in everything, in an order of its own."""
+    scene = flat_ground()
+    generator = np.random.default_rng(22)
+    features = [[walk(generator, generator.uniform(-60, 60, 2) * (1, 0.5), 6.13, 12)] for _ in range(36)]
+    patterns = (None, dashes(5.0, (0.0, 3.0)), dashes(8.0, (0.0, 6.0, 1.0, 0.2)))
+    styles = [
+        StrokeStyle(corner, cap, pattern=patterns[(i + j) % 3], bands=BANDS if (i + 2 * j) % 4 == 0 else ())
+        for i, corner in enumerate(CORNERS)
+        for j, cap in enumerate(CAPS)
+    ]
+    colors = tints(36, 23, (0.4, 1.0))
+    widths = generator.uniform(0.5, 6.0, 36)
+    styled(
+        scene, "lines", features, stroke=stroke(36, widths, colors, styles), order=generator.permutation(36)
+    )
+    return above(scene)
+
+
+# Patterns
+
+
+@_named
+def dash_periods() -> View:
+    """Periods from far below a pixel to longer than the line."""
+    scene = flat_ground()
+    periods = np.geomspace(0.06, 600.0, 18)
+    y = np.linspace(-40.0, 40.0, 18)
+    features = [[np.array([(-75.0, a), (0.3, a + 1.0), (75.0, a - 1.0)])] for a in y]
+    styles = [
+        StrokeStyle("miter", "butt", pattern=dashes(period, (0.0, 0.6 * period), offset=0.3 * period))
+        for period in periods
+    ]
+    styled(scene, "lines", features, stroke=stroke(18, 2.5, tints(18, 24), styles))
+    return above(scene)
+
+
+@_named
+def dashes_around_corners() -> View:
+    """Dashes over corners and caps of every kind, on open and closed lines."""
+    scene = flat_ground()
+    places = grid(3, 3)
+    features = []
+    for row in range(3):
+        for column in range(3):
+            ring = circle(0.0, 0.0, 10.0, 5 + row, 0.2)
+            spiral = np.array([(14.0, -8.0), (20.0, 9.0), (24.0, -9.0), (15.0, 0.0)]) - (2.0, 0.0)
+            features.append(
+                [
+                    places[row, column] - (6, 0) + np.concatenate([ring, ring[:1]]),
+                    places[row, column] + spiral,
+                ]
+            )
+    styles = [
+        StrokeStyle(corner, cap, pattern=dashes(7.3, (0.0, 3.9), (4.7, 6.1), offset=1.1))
+        for corner in CORNERS
+        for cap in CAPS
+    ]
+    styled(scene, "lines", features, stroke=stroke(9, 4.0, tints(9, 25), styles))
+    return above(scene)
+
+
+@_named
+def arrows_and_stipples() -> View:
+    """Tapered marks: arrows, spindles, and marks that overlap."""
+    scene = flat_ground()
+    patterns = [
+        dashes(9.0, (0.0, 6.0, 1.0, 0.0)),
+        dashes(9.0, (0.0, 5.0, 0.3, 0.3), (5.0, 9.0, 1.0, 0.0)),
+        dashes(6.0, (0.0, 3.0, 0.0, 1.0), (3.0, 6.0, 1.0, 0.0)),
+        dashes(8.0, (0.0, 8.0, 0.2, 0.2), (1.0, 2.0), (4.0, 7.0, 0.5, 0.9)),
+        dashes(2.5, (0.0, 1.25)),
+        dashes(11.0, (2.0, 9.0, 0.1, 1.0)),
+    ]
+    y = np.linspace(-35.0, 35.0, 6)
+    features = [
+        [np.array([(-75.0, a - 4), (-25.0, a + 4), (10.0, a - 3), (30.0, a + 3), (75.0, a)])] for a in y
+    ]
+    styles = [StrokeStyle("round", "round", pattern=pattern) for pattern in patterns]
+    styled(scene, "lines", features, stroke=stroke(6, 6.0, tints(6, 26), styles))
+    return above(scene)
+
+
+@_named
+def far_dashes() -> View:
+    """Dashes at the end of a line of a thousand kilometres, far from the origin."""
+    x, y = 4.2e6, -3.1e6
+    scene = dg.Scene(flat_terrain(100.0, x, y))
+    generator = np.random.default_rng(27)
+    features = []
+    for i in range(8):
+        near = np.array([x, y]) + np.array(
+            [(-90.0, 10.0 * i - 38.0), (0.0, 10.0 * i - 33.0), (90.0, 10.0 * i - 38.0)]
+        )
+        far = near[0] + (-1e6, 2e4 * (i - 4)) + generator.uniform(-1e3, 1e3, 2)
+        features.append([np.concatenate([far[None], near])])
+    styles = [
+        StrokeStyle("miter", "butt", pattern=dashes(period, (0.0, 0.5 * period)))
+        for period in (3.0, 7.7, 40.0)
+    ]
+    styled(scene, "lines", features, stroke=stroke(8, 3.0, tints(8, 28), styles))
+    return above(scene, x, y)
+
+
+# Outlines
+
+
+def holed(places: FloatArray) -> list[list[FloatArray]]:
+    """At each place (n, 2) a heptagon with two holes, one of them small."""
+    return [
+        [circle(x, y, 11.0, 7, 0.2), circle(x - 3, y + 2, 4.0, 4, 0.5), circle(x + 5, y - 3, 1.2, 5)]
+        for x, y in places
+    ]
+
+
+@_named
+def outlines() -> View:
+    """Every corner on every side of the rings, over translucent fills."""
+    scene = flat_ground()
+    places = grid(5, 3)
+    for row, mode in enumerate(MODES):
+        styles = [StrokeStyle(corner) for corner in CORNERS]
+        styled(
+            scene, "polygons", holed(places[row]), fill=fill(5, (*TEAL, 0.5)), outline_mode=mode,
+            stroke=stroke(5, 1.5, tints(5, 30, 0.8), styles),
+        )  # fmt: skip
+    return above(scene)
+
+
+@_named
+def wide_outlines() -> View:
+    """Outlines wider than their polygons and holes."""
+    scene = flat_ground()
+    places = grid(5, 3)
+    widths = np.array([4.0, 7.0, 9.0, 15.0, 30.0])
+    for row, mode in enumerate(MODES):
+        styled(
+            scene, "polygons", holed(places[row]), fill=fill(5, tints(5, 31)), outline_mode=mode,
+            stroke=stroke(5, widths, (*BROWN, 0.6), StrokeStyle("miter" if row != 1 else "round")),
+        )  # fmt: skip
+    return above(scene)
+
+
+def odd_rings() -> list[list[FloatArray]]:
+    """Nested rings, stars and bow ties that cross themselves, rings that overlap, touch and repeat."""
+    bow_tie = np.array([(-60.0, 18.0), (-35.0, 40.0), (-35.0, 18.0), (-60.0, 40.0)])
+    touching = np.array([(0.0, 18.0), (14.0, 28.0), (0.0, 38.0), (0.0, 18.0), (-14.0, 38.0), (-14.0, 22.0)])
+    box = np.array([(35.0, 15.0), (55.0, 15.0), (55.0, 35.0), (35.0, 35.0)])
+    return [
+        nested_rings(-50.0, -18.0, 24.0, 5),
+        [star(0.0, -18.0, 24.0, 7)],
+        [star(50.0, -18.0, 24.0, 5, 0.3)],
+        [bow_tie],
+        [touching],
+        [box, box + 8.0, box + 4.0, box + 4.0],
+    ]
+
+
+@_named
+def inset_odd_rings() -> View:
+    """Outlines on the inside of rings that nest and cross themselves."""
+    scene = flat_ground()
+    styled(
+        scene, "polygons", odd_rings(), fill=fill(6, (*TEAL, 0.4)), outline_mode="inset",
+        stroke=stroke(6, 2.0, (0.7, 0.1, 0.1, 0.8), [StrokeStyle("miter"), StrokeStyle("bevel")]),
+    )  # fmt: skip
+    return above(scene)
+
+
+@_named
+def offset_odd_rings() -> View:
+    """The same on the outside, dashed, without fills."""
+    scene = flat_ground()
+    styles = [StrokeStyle(corner, pattern=dashes(6.0, (0.0, 4.0))) for corner in CORNERS]
+    styled(scene, "polygons", odd_rings(), outline_mode="offset", stroke=stroke(6, 2.0, tints(6, 33), styles))
+    return above(scene)
+
+
+@_named
+def outline_orders() -> View:
+    """Overlapping polygons in an order of their own: each outline over its own fill, or all over all."""
+    scene = flat_ground()
+    for x, order in ((-40.0, "layer"), (40.0, "feature")):
+        places = np.array((x, 0.0)) + np.random.default_rng(34).uniform(-24, 24, (12, 2))
+        styled(
+            scene, "polygons", holed(places), fill=fill(12, tints(12, 35, 0.8)), outline_order=order,
+            stroke=stroke(12, 2.0, (*GREY, 0.8), StrokeStyle("miter", bands=BANDS)),
+            order=np.random.default_rng(36).permutation(12),
+        )  # fmt: skip
+    return above(scene)
+
+
+@_named
+def outlines_of_neighbours() -> View:
+    """A partition whose cells have insets, over one another's borders nothing shows."""
+    scene = flat_ground()
+    cells = [[np.asarray(cell.exterior.coords)[:-1]] for cell in partition((-90, -60, 90, 60), 10, 7)]
+    styled(
+        scene, "polygons", cells, fill=fill(70, tints(70, 37)), outline_mode="inset",
+        stroke=stroke(70, 1.5, tints(70, 38)),
+    )  # fmt: skip
+    return aslant(scene)
+
+
+# Hatches
+
+
+@_named
+def hatches() -> View:
+    """Level, upright, slanting and crossed, wide and far below a pixel."""
+    scene = flat_ground()
+    found: list[HatchPattern | None] = [
+        HatchPattern(spacing, 0.4 * spacing, angle, crossed)
+        for spacing, crossed in ((3.0, False), (5.0, True), (0.3, False))
+        for angle in (0.0, 45.0, 90.0, 30.0)
+    ]
+    places = grid(6, 2).reshape(-1, 2)
+    features = [[circle(x, y, 16.0, 9), circle(x, y, 5.0, 5)] for x, y in places]
+    outline = stroke(12, 0.8, (*GREY, 1.0))
+    styled(scene, "polygons", features, fill=fill(12, tints(12, 39, (0.5, 1.0)), found), stroke=outline)
+    return above(scene)
+
+
+@_named
+def hatches_aslant() -> View:
+    """Hatches over even fills, seen obliquely on uneven ground."""
+    scene = dg.Scene(uneven_terrain(100.0, 10.0))
+    cells = [[np.asarray(cell.exterior.coords)[:-1]] for cell in partition((-90, -90, 90, 90), 6, 6)]
+    found = [None, HatchPattern(6.0, 1.5, 30.0), HatchPattern(8.0, 2.0, 45.0, True)]
+    styled(scene, "polygons", cells, fill=fill(36, (0.9, 0.8, 0.5)))
+    styled(scene, "polygons", cells, fill=fill(36, tints(36, 40, 0.8), found))
+    return aslant(scene)
+
+
+# Slopes
+
+
+def steep_ground() -> dg.Scene:
+    return dg.Scene(uneven_terrain(100.0, 45.0, samples=17))
+
+
+def on_slopes(correction: Literal["thoeny", "tangent"]) -> View:
+    scene = steep_ground()
+    generator = np.random.default_rng(41)
+    features = [[walk(generator, generator.uniform(-70, 70, 2), 9.13, 16)] for _ in range(24)]
+    styles = [
+        StrokeStyle("round", "round", slope_correction=correction),
+        StrokeStyle("miter", "butt", slope_correction=correction, miter_limit=30.0),
+        StrokeStyle("bevel", "butt", slope_correction=correction, pattern=dashes(7.0, (0.0, 4.5))),
+        StrokeStyle("round", "butt", slope_correction=correction, bands=BANDS),
+    ]
+    styled(scene, "lines", features, stroke=stroke(24, 5.0, tints(24, 42, (0.5, 1.0)), styles))
+    cells = [
+        [circle(x, y, 14.0, 7), circle(x, y, 6.0, 4)] for x in (-50.0, 0.0, 50.0) for y in (-50.0, 0.0, 50.0)
+    ]
+    rim = StrokeStyle("miter", slope_correction=correction)
+    styled(scene, "polygons", cells, stroke=stroke(9, 2.0, (*GREY, 0.9), rim), outline_mode="inset")
+    return aslant(scene, 150.0, 40.0)
+
+
+@_named
+def tangent_slopes() -> View:
+    """Strokes as wide as they are on steep ground."""
+    return on_slopes("tangent")
+
+
+@_named
+def thoeny_slopes() -> View:
+    """Strokes narrowed on steep ground as it is seen from the side."""
+    return on_slopes("thoeny")
