@@ -61,6 +61,7 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     group.style.half_width *= width_factor(group.style);
     group.metric = metric_of(group.style);
     group.pen = lifted_pen;
+    group.last = vec2(-1.0);
     scale = group.line ? group.style.scale : 1.0;
     group.half_width = group.style.half_width;
     foot = group.metric * foot;
@@ -119,7 +120,7 @@ uint next_alike(inout Group group, uint word, vec2 from, vec2 to) {
     vec2 point = point_of(word);
     bool starts = starts_edge(word);
     if (starts) {
-        group.pen = lifted_pen;
+        if (point != group.last) group.pen = lifted_pen;
         group.pen.awaits_phase = has(group.style, STYLE_PATTERN);
     }
     group.run = starts ? 0.0 : distance(point, group.last);

@@ -14,7 +14,8 @@
 //
 // Lines whose corners and ends are not all round are JOINED: an edge is a bar alone; between two edges that follow each other there
 // is a corner; an edge of no length is a disc. Where it has a pattern, a word follows each MOVE: how far along the period
-// it is, as a fraction of PHASE_ONE.
+// it is, as a fraction of PHASE_ONE. A MOVE to where the run has come to keeps the corner there: where a ring closes, the
+// pattern begins anew.
 //
 //     plain    MOVE a   b    c          joined   MOVE a   a    b    c          with a pattern   MOVE a   phase   b    c
 //              (a====(b====(c                    (a)  a====b<c====c

@@ -96,13 +96,14 @@ void open_group(inout Walk walk, uint header) {
     precise vec2 corner = walk.at - walk.bias;
     walk.corner = corner;
     walk.pen = lifted_pen;
+    walk.last = vec2(-1.0);
 }
 
 void read_stroke(inout Walk walk, vec2 point, bool starts) {
     vec2 to = walk.metric * (walk.at - point);
     bool joined = has(walk.style, STYLE_JOINED);
     if (starts) {
-        walk.pen = lifted_pen;
+        if (point != walk.last) walk.pen = lifted_pen;
         walk.pen.awaits_phase = has(walk.style, STYLE_PATTERN);
     }
     vec2 from = starts ? to : walk.from;

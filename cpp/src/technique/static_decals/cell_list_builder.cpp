@@ -7,7 +7,6 @@ namespace decalgl {
 namespace {
 
 constexpr uint32_t no_slot = std::numeric_limits<uint32_t>::max();
-constexpr uint32_t no_point = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t texel_words = 4;
 constexpr size_t most_words_of_an_edge = 4;  // header, two points and a phase
 

@@ -42,6 +42,11 @@ public:
     // pattern, how far along the period `from` is.
     void add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, uint32_t to,
                   const uint32_t* phase = nullptr);
+    // Lets the next edge move to its beginning, and tell its phase, even where the run has come to.
+    void lift_pen(uint32_t cell, uint32_t slot) {
+        if (cells_[cell].slot == slot)
+            cells_[cell].last = no_point;
+    }
     // A joined stroke's disc.
     void add_disc(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase);
     void add_covers(uint32_t cell, uint32_t slot, uint32_t flags);
@@ -54,6 +59,8 @@ public:
     void finish(CellChunk& chunk);
 
 private:
+    static constexpr uint32_t no_point = 0xFFFFFFFFU;
+
     struct Cell {
         uint32_t slot;    // of the open group
         uint32_t header;  // of the open group, in words_

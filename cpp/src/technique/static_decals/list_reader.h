@@ -76,7 +76,7 @@ private:
         } else if (!style_.is(STYLE_JOINED)) {
             add_capsule(moves ? to : from_, to);
         } else if (moves) {
-            has_came_ = false;
+            has_came_ = has_came_ && to.x == from_.x && to.y == from_.y;
             awaits_phase_ = style_.is(STYLE_PATTERN);
         } else {
             add_joined_edge(to);

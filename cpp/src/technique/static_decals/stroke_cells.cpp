@@ -89,7 +89,7 @@ void StrokeCells::add_edges(Span<const LatticePoint> points, const StrokeEnds& e
     }
     const auto add = [&](LatticePoint a, LatticePoint b) {
         for_each_square_near(a, b, reach_, cells_, [&](int64_t column, int64_t row) {
-            add_edge({a, b, 0.0}, column, row);
+            add_edge({a, b, 0.0, false}, column, row);
         });
     };
     if (points.size() == 1)
@@ -122,7 +122,7 @@ void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeE
     if (ends.begins && round)
         on_disc(points[0], periods);
     for (size_t i = 1; i <= last; ++i) {
-        Edge edge{points[i - 1], points[i], periods};
+        Edge edge{points[i - 1], points[i], periods, i == 1 && !ends.begins};
         periods += length_of(edge.a, edge.b) * shape_->periods_per_quantum;
         double reach = radius;
         const bool begins = i == 1 && ends.begins, finishes = i == last && ends.ends;
@@ -194,6 +194,8 @@ void StrokeCells::add_edge(const Edge& edge, int64_t column, int64_t row) {
     if (!shows_in(cell) || (covers_cells_ && lists_->is_covered(cell, slot_)))
         return;
     const bool patterned = shape_->periods_per_quantum > 0.0;
+    if (patterned && edge.restarts)
+        lists_->lift_pen(cell, slot_);
     const int64_t bias = cell_bias(lists_->level());
     const int64_t left = cells_.border(column), bottom = cells_.border(row);
     const int64_t x0 = a.x - left + bias, y0 = a.y - bottom + bias, x1 = b.x - left + bias,

@@ -41,6 +41,7 @@ private:
     struct Edge {
         LatticePoint a, b;
         double periods;  // at a
+        bool restarts = false;  // the pattern goes on from another place
     };
 
     void add_joined(Span<const LatticePoint> points, const StrokeEnds& ends);
