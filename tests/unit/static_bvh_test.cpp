@@ -12,6 +12,7 @@
 #include "technique/static_bvh/prepared_bvh.h"
 #include "technique/static_bvh/quad_trees.h"
 #include "technique/static_bvh/quad_walk.h"
+#include "technique/static_bvh/stroke_outline.h"
 
 using namespace decalgl;
 using namespace decalgl::bvh;
@@ -175,11 +176,10 @@ bool well_formed_cell(const PreparedBvh& bvh, const DecalGroup& group, uint32_t 
         good &= box.empty() || group.nodes[start.node + node / 2 - 1].holds(box);
     }
     const bool in_order =
-        group.kind == FeatureKind::polygons || bvh.options.segment_order == SegmentOrder::importance;
+        group.kind != GroupKind::strokes || bvh.options.segment_order == SegmentOrder::importance;
     uint32_t previous = 0;
     for (uint32_t i = start.object; i < start.object + objects; ++i) {
-        const uint32_t slot =
-            group.kind == FeatureKind::polygons ? group.exteriors[i].slot : group.owners[group.segments[i].a];
+        const uint32_t slot = group.slot_of(group.object(i));
         good &= slot < group.styles.size() && (!in_order || slot >= previous);
         previous = slot;
     }
@@ -531,7 +531,8 @@ TEST_CASE("widened segments reach the cells that they overlap", "[bvh]") {
         const LatticePoint a{place(), place()}, b{place(), place()};
         const double half_width = random.between(1, i % 2 ? 50 : 1500);
         std::vector<bool> reached(grid.cell_count(), false);
-        grid.for_each_cell(stroke_outline(a, b, half_width), stroke_box(a, b, half_width),
+        const StrokeOutline outline = round_outline(a, b, half_width);
+        grid.for_each_cell(outline.corners, outline.box,
                            [&](uint32_t cell) { reached[cell] = true; });
         const Feature line{{double(a.x), double(a.y), double(b.x), double(b.y)}};
         for (uint32_t cell = 0; cell < grid.cell_count(); ++cell) {

@@ -4,72 +4,149 @@
 //     pixel ─▶ map position ─▶ cell ─▶ its tree, without a stack: down into boxes that hold the point,
 //     else to the right; at a leaf a segment, or a ring's subtree; front to back until nothing shows behind
 //
-// RINGS          a group of polygons, else of lines
+// RINGS          a group of fills, else of strokes
+// BOTH           a group of fills and strokes, with INSET or OFFSET for strokes on one side of their rings
+// CORNERS        strokes are more than round; with PATTERNS, BANDS or SLOPES as some of them ask for
+// HATCHES        some fills are of parallel lines
 // UNSORTED       segments lie along a Hilbert curve: the walk goes on to the end
 // NEAREST        the nearest line that covers the point is the only one seen
-// COVERAGE       the mean of 32 points of the pixel's area, each walked by itself
+// SAMPLE         one of the 32 points of the pixel's area, else its centre
 // IDS            writes 1 + slot of the topmost feature at the centre, nothing where there is none
 #include "shared/ray.glsl"
 #include "technique/static_bvh/tree.glsl"
-#ifdef RINGS
+#if defined(RINGS) || defined(BOTH)
 #include "technique/static_bvh/quad_trees.glsl"
-#else
+#endif
+#if !defined(RINGS) && defined(CORNERS)
+#include "technique/static_bvh/styled_strokes.glsl"
+#elif !defined(RINGS)
 #include "technique/static_bvh/strokes.glsl"
 #endif
 
 uniform usampler2D position_texture;
-#ifdef COVERAGE
-#include "shared/sample_offsets.glsl"
+uniform int first_row;  // of the strip that is drawn
+#if defined(SAMPLE) || defined(SLOPES)
 uniform sampler2D surface_texture;
+#endif
+#ifdef SAMPLE
+#include "shared/sample_offsets.glsl"
+uniform int sample_index;
+#endif
+#ifdef BOTH
+uniform usamplerBuffer bvh_objects;
 #endif
 
 const uint no_slot = 0xFFFFFFFFu;
 
-// What has been found so far. In draw order, `slot` is the last feature added to the colour; else the one to
-// be shown.
+// What has been found so far. In draw order, `slot` is the last feature added to the colour, with BANDS the one
+// to be added next; else the one to be shown.
 struct Found {
     vec4 sum;
     uint slot;
     float distance2;
+    float across;
     bool done;
 };
 
-void add_color(inout Found found, uint slot) {
-    found.slot = slot;
+void add_color(inout Found found, uint slot, float across) {
 #ifdef IDS
+    found.slot = slot;
     found.done = true;
 #else
+#ifdef BANDS
+    vec4 straight = band_color(slot, across);
+#else
     vec4 straight = color_of(slot);
+#endif
     found.sum += (1.0 - found.sum.a) * vec4(straight.rgb * straight.a, straight.a);
     found.done = found.sum.a >= 0.999;
 #endif
 }
 
+#if defined(BANDS) && !defined(IDS)
+// A stroke's colour is known once all its segments have been seen.
+void settle(inout Found found) {
+    if (found.slot != no_slot) add_color(found, found.slot, found.across);
+    found.slot = no_slot;
+}
+#endif
+
+// The segments of a line follow each other, and it covers a point once.
+void add_in_order(inout Found found, uint slot, float across) {
+#if defined(BANDS) && !defined(IDS)
+    if (slot != found.slot) {
+        settle(found);
+        found.across = across;
+    }
+    found.across = min(found.across, across);
+    found.slot = slot;
+#else
+    if (slot != found.slot) add_color(found, slot, across);
+    found.slot = slot;
+#endif
+}
+
+#if defined(NEAREST) || defined(UNSORTED)
+// The one line to be shown.
+void keep(inout Found found, Candidate line) {
+#ifdef NEAREST
+    bool better = line.distance2 < found.distance2 || (line.distance2 == found.distance2 && line.slot < found.slot);
+#else
+    bool better = line.slot < found.slot || (line.slot == found.slot && line.across < found.across);
+#endif
+    if (line.covers && better) {
+        found.slot = line.slot;
+        found.distance2 = line.distance2;
+        found.across = line.across;
+    }
+}
+#endif
+
 // A leaf of the cell's tree whose box holds the point.
 void visit(inout Found found, int object, ivec2 point) {
 #if defined(RINGS)
     uvec4 exterior = texelFetch(bvh_exteriors, object);
-    if (exterior_holds(exterior, point)) add_color(found, exterior.y);
+    bool covers = exterior_holds(exterior, point);
+#ifdef HATCHES
+    covers = covers && hatch_holds(int(texelFetch(bvh_styles, int(exterior.y)).b), point);
+#endif
+    if (covers) add_in_order(found, exterior.y, 0.0);
+#elif defined(BOTH)
+    uvec2 kind = texelFetch(bvh_objects, object).rg;
+    bool is_stroke = (kind.x & STROKE_OBJECT) != 0u;
+    Candidate line = candidate(is_stroke ? int(kind.x & ~STROKE_OBJECT) : 0, point);
+    uint place = is_stroke ? kind.y : kind.x;
+#if !defined(INSET) && !defined(OFFSET)
+    if (is_stroke) place = NO_EXTERIOR;
+#endif
+    bool wanted = place != NO_EXTERIOR && (!is_stroke || line.covers);
+    uvec4 exterior = wanted ? texelFetch(bvh_exteriors, int(place)) : uvec4(NO_SUBTREE, 0u, 0u, 0u);
+    bool inside = exterior_holds(exterior, point);
+    bool covers = inside;
+#ifdef HATCHES
+    uint fill = is_stroke || !wanted ? line.slot : exterior.y;
+    covers = covers && (is_stroke || hatch_holds(int(texelFetch(bvh_styles, int(fill)).b), point));
+#endif
+#if defined(INSET)
+    if (is_stroke) covers = line.covers && inside;
+#elif defined(OFFSET)
+    if (is_stroke) covers = line.covers && !inside;
+#else
+    if (is_stroke) covers = line.covers;
+#endif
+    if (covers) add_in_order(found, is_stroke ? line.slot : exterior.y, is_stroke ? line.across : 0.0);
 #else
     Candidate line = candidate(object, point);
-    bool covers = line.distance2 < out_of_reach;
-#if defined(NEAREST)
-    bool ties = line.distance2 == found.distance2 && line.slot < found.slot;
-    if (covers && (line.distance2 < found.distance2 || ties)) {
-        found.slot = line.slot;
-        found.distance2 = line.distance2;
-    }
-#elif defined(UNSORTED)
-    if (covers) found.slot = min(found.slot, line.slot);
+#if defined(NEAREST) || defined(UNSORTED)
+    keep(found, line);
 #else
-    // The segments of a line follow each other, and it covers a point once.
-    if (covers && line.slot != found.slot) add_color(found, line.slot);
+    if (line.covers) add_in_order(found, line.slot, line.across);
 #endif
 #endif
 }
 
 Found walk(ivec2 point) {
-    Found found = Found(vec4(0.0), no_slot, 1e38, false);
+    Found found = Found(vec4(0.0), no_slot, 1e38, 1e38, false);
     Tree tree = tree_at(point);
     uint end = tree.first_leaf + tree.objects;
     uint node = tree.objects > 0u ? 1u : 0u;
@@ -80,8 +157,10 @@ Found walk(ivec2 point) {
         if (inside && is_leaf) visit(found, tree.first_object + int(node - tree.first_leaf), point);
         node = inside && !is_leaf ? 2u * node : next_right(node);
     }
-#if !defined(RINGS) && (defined(NEAREST) || defined(UNSORTED))
-    if (found.slot != no_slot) add_color(found, found.slot);
+#if defined(NEAREST) || defined(UNSORTED)
+    if (found.slot != no_slot) add_color(found, found.slot, found.across);
+#elif defined(BANDS) && !defined(IDS)
+    if (!found.done) settle(found);
 #endif
     return found;
 }
@@ -89,29 +168,30 @@ Found walk(ivec2 point) {
 #ifdef IDS
 uniform uint first_slot;
 layout(location = 0) out uint id;
-
-void main() {
-    Position position = unpack_position(texelFetch(position_texture, ivec2(gl_FragCoord.xy), 0));
-    if (is_sky(position)) discard;
-    Found found = walk(lattice_point(position, vec2(0.0)));
-    if (found.slot == no_slot) discard;
-    id = first_slot + found.slot + 1u;
-}
 #else
 layout(location = 0) out vec4 color;
+#endif
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 pixel = ivec2(gl_FragCoord.xy) + ivec2(0, first_row);
     Position position = unpack_position(texelFetch(position_texture, pixel, 0));
-    color = vec4(0.0);
-    if (is_sky(position)) return;
-#ifdef COVERAGE
+    if (is_sky(position)) discard;
+    vec2 moved = vec2(0.0);
+#if defined(SAMPLE) || defined(SLOPES)
     vec4 surface = texelFetch(surface_texture, pixel, 0);
-    mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
-    for (int i = 0; i < sample_count; ++i)
-        color += walk(lattice_point(position, foot * sample_offsets[i])).sum / float(sample_count);
+#endif
+#ifdef SLOPES
+    gradient = surface.xy;
+#endif
+#ifdef SAMPLE
+    vec2 from_centre = pixel_from_centre() + vec2(0.0, first_row);
+    moved = footprint(from_centre, surface.xy, surface.z) * sample_offsets[sample_index];
+#endif
+    Found found = walk(lattice_point(position, moved));
+#ifdef IDS
+    if (found.slot == no_slot) discard;
+    id = first_slot + found.slot + 1u;
 #else
-    color = walk(lattice_point(position, vec2(0.0))).sum;
+    color = found.sum;
 #endif
 }
-#endif
