@@ -26,10 +26,10 @@ float cross_product(vec2 a, vec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// Between a segment's ends, from which `from_a` and `from_b` lead; `across` from its line. `slack` is how far
-// beyond the ends it still goes, so that rounding opens no gap before a corner.
-float bar_reach(vec2 from_a, vec2 from_b, vec2 direction, float across, float slack) {
-    bool between = dot(from_a, direction) >= -slack && dot(from_b, direction) <= slack;
+// Between a segment's ends, from which `from_a` and `from_b` lead; `across` from its line. `longer`: how far it
+// goes on beyond either end, with a square cap a half width, else so little that rounding opens no gap.
+float bar_reach(vec2 from_a, vec2 from_b, vec2 direction, float across, vec2 longer) {
+    bool between = dot(from_a, direction) >= -longer.x && dot(from_b, direction) <= longer.y;
     return between ? abs(across) : out_of_reach;
 }
 
@@ -53,11 +53,9 @@ float corner_reach(uint corner, vec2 from, vec2 incoming, vec2 outgoing, float l
     return is_round ? length(from) : in_gap ? reach : out_of_reach;
 }
 
-// `outwards`: the direction in which the stroke ends.
-float cap_reach(uint cap, vec2 from, vec2 outwards) {
-    float along = dot(from, outwards);
-    float square = along >= 0.0 ? max(along, abs(cross_product(outwards, from))) : out_of_reach;
-    return cap == round_cap ? length(from) : cap == square_cap ? square : out_of_reach;
+// Beside what the bar does.
+float cap_reach(uint cap, vec2 from) {
+    return cap == round_cap ? length(from) : out_of_reach;
 }
 
 // A part of one point.

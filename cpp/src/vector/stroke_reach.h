@@ -27,9 +27,9 @@ inline double length(Vector2 a) {
 
 constexpr double out_of_reach = 1e300;
 
-// Between a segment's ends, from which `from_a` and `from_b` lead.
-inline double bar_reach(Vector2 from_a, Vector2 from_b, Vector2 direction, double slack) {
-    const bool between = dot(from_a, direction) >= -slack && dot(from_b, direction) <= slack;
+// Between a segment's ends, from which `from_a` and `from_b` lead, and so much farther beyond them.
+inline double bar_reach(Vector2 from_a, Vector2 from_b, Vector2 direction, Vector2 longer) {
+    const bool between = dot(from_a, direction) >= -longer.x && dot(from_b, direction) <= longer.y;
     return between ? std::abs(cross(direction, from_a)) : out_of_reach;
 }
 
@@ -51,13 +51,9 @@ inline double corner_reach(Corner corner, Vector2 from, Vector2 incoming, Vector
     return std::max(reach, dot(from, bend) / length(bend) / half_turn);
 }
 
-// `outwards`: the direction in which the stroke ends.
-inline double cap_reach(Cap cap, Vector2 from, Vector2 outwards) {
-    if (cap == Cap::round)
-        return length(from);
-    const double along = dot(from, outwards);
-    return cap == Cap::square && along >= 0.0 ? std::max(along, std::abs(cross(outwards, from)))
-                                              : out_of_reach;
+// Beside what the bar does.
+inline double cap_reach(Cap cap, Vector2 from) {
+    return cap == Cap::round ? length(from) : out_of_reach;
 }
 
 // A part of one point.

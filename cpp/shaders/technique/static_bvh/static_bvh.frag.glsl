@@ -17,10 +17,14 @@
 #if defined(RINGS) || defined(BOTH)
 #include "technique/static_bvh/quad_trees.glsl"
 #endif
-#if !defined(RINGS) && defined(CORNERS)
+// A file is included where it is first asked for, whatever flags surround it there.
+#ifndef RINGS
+#include "technique/static_bvh/candidate.glsl"
+#ifdef CORNERS
 #include "technique/static_bvh/styled_strokes.glsl"
-#elif !defined(RINGS)
+#else
 #include "technique/static_bvh/strokes.glsl"
+#endif
 #endif
 
 uniform usampler2D position_texture;
@@ -39,9 +43,10 @@ uniform usamplerBuffer bvh_objects;
 const uint no_slot = 0xFFFFFFFFu;
 
 // What has been found so far. In draw order, `slot` is the last feature added to the colour, with BANDS the one
-// to be added next; else the one to be shown.
+// to be added next; else the one to be shown. `seen` is the topmost that shows.
 struct Found {
     vec4 sum;
+    uint seen;
     uint slot;
     float distance2;
     float across;
@@ -49,21 +54,21 @@ struct Found {
 };
 
 void add_color(inout Found found, uint slot, float across) {
-#ifdef IDS
-    found.slot = slot;
-    found.done = true;
-#else
 #ifdef BANDS
     vec4 straight = band_color(slot, across);
 #else
     vec4 straight = color_of(slot);
 #endif
+    if (found.seen == no_slot && straight.a > 0.0) found.seen = slot;
     found.sum += (1.0 - found.sum.a) * vec4(straight.rgb * straight.a, straight.a);
+#ifdef IDS
+    found.done = found.seen != no_slot;
+#else
     found.done = found.sum.a >= 0.999;
 #endif
 }
 
-#if defined(BANDS) && !defined(IDS)
+#ifdef BANDS
 // A stroke's colour is known once all its segments have been seen.
 void settle(inout Found found) {
     if (found.slot != no_slot) add_color(found, found.slot, found.across);
@@ -73,17 +78,16 @@ void settle(inout Found found) {
 
 // The segments of a line follow each other, and it covers a point once.
 void add_in_order(inout Found found, uint slot, float across) {
-#if defined(BANDS) && !defined(IDS)
+#ifdef BANDS
     if (slot != found.slot) {
         settle(found);
         found.across = across;
     }
     found.across = min(found.across, across);
-    found.slot = slot;
 #else
     if (slot != found.slot) add_color(found, slot, across);
-    found.slot = slot;
 #endif
+    found.slot = slot;
 }
 
 #if defined(NEAREST) || defined(UNSORTED)
@@ -146,7 +150,7 @@ void visit(inout Found found, int object, ivec2 point) {
 }
 
 Found walk(ivec2 point) {
-    Found found = Found(vec4(0.0), no_slot, 1e38, 1e38, false);
+    Found found = Found(vec4(0.0), no_slot, no_slot, 1e38, 1e38, false);
     Tree tree = tree_at(point);
     uint end = tree.first_leaf + tree.objects;
     uint node = tree.objects > 0u ? 1u : 0u;
@@ -159,7 +163,7 @@ Found walk(ivec2 point) {
     }
 #if defined(NEAREST) || defined(UNSORTED)
     if (found.slot != no_slot) add_color(found, found.slot, found.across);
-#elif defined(BANDS) && !defined(IDS)
+#elif defined(BANDS)
     if (!found.done) settle(found);
 #endif
     return found;
@@ -189,8 +193,8 @@ void main() {
 #endif
     Found found = walk(lattice_point(position, moved));
 #ifdef IDS
-    if (found.slot == no_slot) discard;
-    id = first_slot + found.slot + 1u;
+    if (found.seen == no_slot) discard;
+    id = first_slot + found.seen + 1u;
 #else
     color = found.sum;
 #endif

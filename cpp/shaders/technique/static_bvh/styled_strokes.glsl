@@ -40,7 +40,7 @@ struct Run {
     bool plain_end;
     bool is_dot;
     vec2 phases;  // of the start and the end, quanta
-    float along;  // from the start to the point, on the map
+    float along;  // from the start to the foot of the point, measured on the map
 };
 
 vec2 direction_of(mat2 lengths, ivec2 way) {
@@ -64,8 +64,9 @@ Run run_to(uvec2 segment, ivec2 point, mat2 lengths) {
     run.from_start = lengths * vec2(point - from);
     run.from_end = lengths * vec2(point - to);
     run.direction = direction_of(lengths, to - from);
-    // Areas grow by the determinant, and lengths along by that of the direction.
-    run.across = abs(across) * determinant(lengths) / max(length(lengths * level), 1e-30);
+    // Areas grow by the determinant, and lengths along the segment by that of its direction.
+    float stretch = max(length(lengths * level), 1e-30);
+    run.across = abs(across) * determinant(lengths) / stretch;
     run.incoming = direction_of(lengths, from - texelFetch(bvh_vertices, start - 1).rg);
     run.outgoing = direction_of(lengths, texelFetch(bvh_vertices, end + 1).rg - to);
     run.plain_start = forward ? plain.x : plain.y;
@@ -73,23 +74,25 @@ Run run_to(uvec2 segment, ivec2 point, mat2 lengths) {
     run.is_dot = way == ivec2(0);
 #ifdef PATTERNS
     run.phases = vec2(uintBitsToFloat(texelFetch(bvh_owners, start).g), uintBitsToFloat(texelFetch(bvh_owners, end).g));
-    run.along = dot(vec2(point - from), forward ? level : -level);
+    run.along = dot(run.from_start, run.direction) / stretch;
 #endif
     return run;
 }
 
 // The least half widths at which the bar and what is at its start and its end cover the point.
-vec3 reaches(Run run, Look look) {
+vec3 reaches(Run run, Look look, float half_width) {
     if (run.is_dot) return vec3(out_of_reach, dot_reach(look.cap, run.from_start), out_of_reach);
-    // A quarter of a quantum, less than points are rounded by.
-    float bar = bar_reach(run.from_start, run.from_end, run.direction, run.across, 0.25);
-    float start = run.incoming == vec2(0.0)
-                      ? cap_reach(look.cap, run.from_start, -run.direction)
-                      : corner_reach(look.corner, run.from_start, run.incoming, run.direction, look.limit);
-    float end = run.outgoing == vec2(0.0)
-                    ? cap_reach(look.cap, run.from_end, run.direction)
-                    : corner_reach(look.corner, run.from_end, run.direction, run.outgoing, look.limit);
-    return vec3(bar, run.plain_start ? out_of_reach : start, run.plain_end ? out_of_reach : end);
+    bvec2 is_cap = bvec2(run.incoming == vec2(0.0), run.outgoing == vec2(0.0));
+    bvec2 is_plain = bvec2(run.plain_start, run.plain_end);
+    // A quarter of a quantum is less than points are rounded by.
+    bvec2 is_longer = bvec2(is_cap.x && !is_plain.x, is_cap.y && !is_plain.y);
+    vec2 longer = look.cap == square_cap ? mix(vec2(0.25), vec2(half_width), is_longer) : vec2(0.25);
+    float bar = bar_reach(run.from_start, run.from_end, run.direction, run.across, longer);
+    float start = is_cap.x ? cap_reach(look.cap, run.from_start)
+                           : corner_reach(look.corner, run.from_start, run.incoming, run.direction, look.limit);
+    float end = is_cap.y ? cap_reach(look.cap, run.from_end)
+                         : corner_reach(look.corner, run.from_end, run.direction, run.outgoing, look.limit);
+    return vec3(bar, mix(vec2(start, end), vec2(out_of_reach), is_plain));
 }
 
 #ifdef PATTERNS
@@ -118,7 +121,7 @@ Candidate candidate(int object, ivec2 point) {
     if (look.slope == thoeny_slope) half_width *= thoeny_width(gradient, forward.z);
 #endif
     Run run = run_to(segment, point, lengths);
-    vec3 reach = reaches(run, look);
+    vec3 reach = reaches(run, look, half_width);
     vec3 limit = vec3(half_width);
 #ifdef PATTERNS
     limit *= pattern_widths(run, look, int(style.b));

@@ -11,9 +11,13 @@
 namespace decalgl::bvh {
 namespace {
 
-bool stroke_holds(const DecalGroup& group, Object object, LatticePoint point) {
-    if (!stroke_covers(group, object.segment(), point))
-        return false;
+// Where an object covers a point: a slot, and the place across its stroke.
+struct Cover {
+    uint32_t slot;
+    double share;
+};
+
+bool on_its_side(const DecalGroup& group, Object object, LatticePoint point) {
     if (group.cut == OutlineMode::normal)
         return true;
     const bool inside =
@@ -25,23 +29,41 @@ bool fill_holds(const DecalGroup& group, const Exterior& exterior, LatticePoint 
     return holds(group, exterior, point) && hatch_holds(group, group.styles[exterior.slot].look, point);
 }
 
+std::vector<Cover> covers_of(const DecalGroup& group, LatticePoint point) {
+    std::vector<Cover> covers;
+    const CellStart start = group.cells[group.grid.cell_at(point)];
+    const uint32_t objects = group.objects_in(group.grid.cell_at(point));
+    const auto reached = [&](const LatticeBox& box) { return box.holds(point); };
+    traverse(group.nodes.data() + start.node, objects, reached, [&](uint32_t index) {
+        const Object object = group.object(start.object + index);
+        if (!object.is_stroke()) {
+            const Exterior& exterior = group.exteriors[object.place];
+            if (fill_holds(group, exterior, point))
+                covers.push_back({exterior.slot, 0.0});
+            return true;
+        }
+        const double share = stroke_share(group, object.segment(), point);
+        if (share <= 1.0 && on_its_side(group, object, point))
+            covers.push_back({group.slot_of(object), share});
+        return true;
+    });
+    return covers;
+}
+
 std::vector<uint32_t> slots_at(const DecalGroup& group, LatticePoint point) {
     std::vector<uint32_t> found;
     if (!group.grid.box.holds(point))
         return found;
-    const uint32_t cell = group.grid.cell_at(point);
-    const CellStart start = group.cells[cell];
-    const auto reached = [&](const LatticeBox& box) { return box.holds(point); };
-    traverse(group.nodes.data() + start.node, group.objects_in(cell), reached, [&](uint32_t object) {
-        const Object own = group.object(start.object + object);
-        if (own.is_stroke() ? stroke_holds(group, own, point)
-                            : fill_holds(group, group.exteriors[own.place], point))
-            found.push_back(group.slot_of(own));
-        return true;
-    });
+    std::vector<Cover> covers = covers_of(group, point);
     // Strokes come segment by segment, along a curve even out of order.
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    std::sort(covers.begin(), covers.end(),
+              [](Cover a, Cover b) { return a.slot != b.slot ? a.slot < b.slot : a.share < b.share; });
+    uint32_t last = NO_SLOT;
+    for (const Cover& cover : covers) {
+        if (cover.slot != last && band_shows(group, cover.slot, cover.share))
+            found.push_back(cover.slot);
+        last = cover.slot;
+    }
     return found;
 }
 

@@ -17,7 +17,7 @@ using bvh::GroupKind;
 constexpr int sample_count = 32;  // shared/sample_offsets.glsl
 constexpr int no_sample = -1;
 // Samples are drawn in strips of the picture, so that they take no more memory than this many pixels.
-constexpr int pixels_at_once = 1 << 20;
+constexpr int pixels_at_once = 1 << 19;
 
 [[noreturn]] void refuse_files() {
     throw Error(ErrorKind::unsupported,
@@ -110,8 +110,8 @@ void StaticBvh::draw_samples(const View& view, const GBufferView& gbuffer, gl::P
     const int width = gbuffer.position->width(), height = gbuffer.position->height();
     const int rows = std::clamp(pixels_at_once / width, 1, height);
     const gl::Texture2D sample =
-        gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA16F, width, rows);
-    const gl::Texture2D sum = gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA16F, width, rows);
+        gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, rows);
+    const gl::Texture2D sum = gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, rows);
     const gl::Framebuffer one = gl::Framebuffer::create("sample", {{GL_COLOR_ATTACHMENT0, &sample}});
     const gl::Framebuffer all = gl::Framebuffer::create("samples", {{GL_COLOR_ATTACHMENT0, &sum}});
     const auto add = [&](const gl::Texture2D& from, int first_row, float share) {

@@ -9,8 +9,9 @@ namespace decalgl::bvh {
 namespace {
 
 constexpr size_t parts_at_once = 64;
-// Quanta: beyond, a length in float32 is no longer good to an eighth of one.
-constexpr double longest_piece = 1 << 20;
+// Beyond, a length in float32 is neither good to an eighth of a quantum nor to a tenth of a millimetre.
+constexpr double longest_piece = 1 << 20;  // quanta
+constexpr double longest_piece_metres = 1024.0;
 
 // A polyline or a ring of a stroke.
 struct Part {
@@ -176,7 +177,8 @@ private:
     void write_segment(const ChainVertex& a, const ChainVertex& b) {
         const double dx = double(b.point.x) - a.point.x, dy = double(b.point.y) - a.point.y;
         const double length = std::hypot(dx, dy);
-        const int pieces = quantum_ > 0.0 ? static_cast<int>(std::ceil(length / longest_piece)) : 1;
+        const double longest = std::max(longest_piece, longest_piece_metres / std::max(quantum_, 1e-9));
+        const int pieces = quantum_ > 0.0 ? static_cast<int>(std::ceil(length / longest)) : 1;
         for (int piece = 1; piece <= pieces; ++piece) {
             const auto from = static_cast<uint32_t>(chains_.vertices.size() - 1);
             const bool plain_a = piece > 1 || a.plain, plain_b = piece < pieces || b.plain;

@@ -27,14 +27,16 @@ Direction direction(LatticePoint from, LatticePoint to) {
 }
 
 // How far an outline goes on beyond its end, in half widths: along its left and its right side, looking
-// outwards, and from the end's vertex in any direction.
+// outwards, and from the end's vertex in any direction; and whether there is a disc, which may reach back beyond
+// the other end.
 struct Extension {
     double left;
     double right;
     double radius;
+    bool disc = false;
 };
 
-constexpr Extension round_extension{1.0, 1.0, 1.0};
+constexpr Extension round_extension{1.0, 1.0, 1.0, true};
 
 Extension beyond_cap(Cap cap) {
     if (cap == Cap::round)
@@ -87,6 +89,11 @@ Extension beyond(const SegmentEnd& end, LatticePoint other, const StrokeStyle& s
     return beyond_corner(style, direction(other, end.vertex), direction(end.vertex, end.next));
 }
 
+void take_in(double reach, Extension& extension) {
+    extension.left = std::max(extension.left, reach);
+    extension.right = std::max(extension.right, reach);
+}
+
 LatticeBox box_of(const Quadrilateral& outline) {
     double low[2] = {farthest, farthest}, high[2] = {-farthest, -farthest};
     for (size_t i = 0; i < 4; ++i) {
@@ -134,8 +141,12 @@ StrokeOutline styled_outline(const SegmentEnd& a, const SegmentEnd& b, const Str
                              double half_width) {
     // A dot is a disc or a square.
     const bool is_dot = !has_length(a.vertex, b.vertex);
-    const Extension at_a = is_dot ? Extension{1.0, 1.0, std::sqrt(2.0)} : beyond(a, b.vertex, style);
-    const Extension at_b = is_dot ? at_a : beyond(b, a.vertex, style);
+    Extension at_a = is_dot ? Extension{1.0, 1.0, std::sqrt(2.0)} : beyond(a, b.vertex, style);
+    Extension at_b = is_dot ? at_a : beyond(b, a.vertex, style);
+    const double length = std::hypot(double(b.vertex.x) - a.vertex.x, double(b.vertex.y) - a.vertex.y);
+    const double back = 1.0 - length / std::max(half_width, 1e-12);
+    take_in(at_b.disc ? back : 0.0, at_a);
+    take_in(at_a.disc ? back : 0.0, at_b);
     const Quadrilateral corners = extended(a.vertex, b.vertex, at_a, at_b, half_width);
     const double reach = std::max(at_a.radius, at_b.radius) * half_width;
     return {corners, common(box_of(corners), round_box(a.vertex, b.vertex, reach))};
