@@ -19,14 +19,26 @@ float distance2(ivec2 point, ivec2 a, ivec2 b) {
     return dot(apart, apart);
 }
 
+#ifdef THOENY
+Candidate candidate(int segment, ivec2 point, mat2 foot) {
+#else
 Candidate candidate(int segment, ivec2 point) {
+#endif
     ivec2 ends = ivec2(texelFetch(bvh_segments, segment).rg);
+    ivec2 a = texelFetch(bvh_vertices, ends.x).rg, b = texelFetch(bvh_vertices, ends.y).rg;
     Candidate found;
     found.slot = texelFetch(bvh_owners, ends.x).r;
     float half_width = uintBitsToFloat(texelFetch(bvh_styles, int(found.slot)).g);
-    float d2 = distance2(point, texelFetch(bvh_vertices, ends.x).rg, texelFetch(bvh_vertices, ends.y).rg);
-    found.covers = half_width > 0.0 && d2 <= half_width * half_width;
-    found.distance2 = d2;
+    found.distance2 = distance2(point, a, b);
+#ifdef THOENY
+    vec2 along = a == b ? vec2(1.0, 0.0) : normalize(vec2(b - a));
+    float coverage = thoeny_coverage(sqrt(found.distance2), half_width, pixel_width(foot, vec2(-along.y, along.x)));
+    found.covers = half_width > 0.0 && coverage > 0.0;
+    vec4 straight = color_of(found.slot);
+    found.color = coverage * vec4(straight.rgb * straight.a, straight.a);
+#else
+    found.covers = half_width > 0.0 && found.distance2 <= half_width * half_width;
     found.across = 0.0;
+#endif
     return found;
 }

@@ -108,7 +108,53 @@ vec3 pattern_widths(Run run, Look look, int place) {
 }
 #endif
 
+#ifdef THOENY
+// The shares of the pixel that the bar and what is at the ends cover, the most of them; `pixel`: its width across the
+// line and along.
+float coverage_of(Run run, Look look, int place, vec3 reach, float half_width, vec2 pixel) {
+    vec3 covered = vec3(0.0);
+#ifdef PATTERNS
+    for (int i = 1; i <= look.marks; ++i) {
+        vec4 mark = uintBitsToFloat(texelFetch(bvh_looks, place + i));
+        float phase = pattern_phase(run.phases.x + run.along, look.period);
+        float nearest = mark_width(mark, clamp(phase, mark.x, mark.y));
+        float share = thoeny_mark_coverage(mark.x, mark.y, look.period, phase, pixel.y);
+        covered.x += share * thoeny_coverage(reach.x, half_width * nearest, pixel.x);
+        for (int k = 1; k < 3; ++k) {
+            float width = mark_width(mark, pattern_phase(run.phases[k - 1], look.period));
+            if (width > 0.0) covered[k] = max(covered[k], thoeny_coverage(reach[k], half_width * width, pixel.x));
+        }
+    }
+    if (look.marks > 0) return max(covered.x, max(covered.y, covered.z));
+#endif
+    return thoeny_coverage(min(reach.x, min(reach.y, reach.z)), half_width, pixel.x);
+}
+
+// Bands as lines of their own, each over the next wider one: what it adds to them is its share of the colour.
+vec4 covered_color(Run run, Look look, int place, uint own, vec3 reach, float half_width, vec2 pixel) {
+    vec4 straight = unpackUnorm4x8(own);
+    vec4 color = straight;
+    float narrower = 0.0;
+    vec4 sum = vec4(0.0);
+    int last = max(look.bands, 1);
+    for (int i = 0; i < last; ++i) {
+        float share = 1.0;
+        if (look.bands > 0) {
+            uvec2 band = texelFetch(bvh_looks, place + 1 + look.marks + i).rg;
+            share = uintBitsToFloat(band.x);
+            color = unpackUnorm4x8(band.y) * vec4(vec3(1.0), straight.a);
+        }
+        float coverage = coverage_of(run, look, place, reach, share * half_width, pixel);
+        sum += max(coverage - narrower, 0.0) * vec4(color.rgb * color.a, color.a);
+        narrower = max(narrower, coverage);
+    }
+    return sum;
+}
+
+Candidate candidate(int object, ivec2 point, mat2 foot) {
+#else
 Candidate candidate(int object, ivec2 point) {
+#endif
     uvec2 segment = texelFetch(bvh_segments, object).rg;
     Candidate found;
     found.slot = texelFetch(bvh_owners, int(segment.x & ~PLAIN_END)).r;
@@ -122,6 +168,15 @@ Candidate candidate(int object, ivec2 point) {
 #endif
     Run run = run_to(segment, point, lengths);
     vec3 reach = reaches(run, look, half_width);
+#ifdef THOENY
+    mat2 stretched = lengths * foot;
+    vec2 along = run.is_dot ? vec2(1.0, 0.0) : run.direction;
+    vec2 pixel = vec2(pixel_width(stretched, vec2(-along.y, along.x)), pixel_width(stretched, along));
+    found.color = covered_color(run, look, int(style.b), style.r, reach, half_width, pixel);
+    float nearest = min(reach.x, min(reach.y, reach.z));
+    found.distance2 = nearest < out_of_reach ? nearest * nearest : out_of_reach;
+    found.covers = half_width > 0.0 && found.color.a > 0.0;
+#else
     vec3 limit = vec3(half_width);
 #ifdef PATTERNS
     limit *= pattern_widths(run, look, int(style.b));
@@ -131,10 +186,11 @@ Candidate candidate(int object, ivec2 point) {
     found.covers = half_width > 0.0 && least < out_of_reach;
     found.distance2 = least < out_of_reach ? least * least : out_of_reach;
     found.across = least / half_width;
+#endif
     return found;
 }
 
-#ifdef BANDS
+#if defined(BANDS) && !defined(THOENY)
 // The colour of a stroke at a place across it, straight alpha.
 vec4 band_color(uint slot, float across) {
     uvec4 style = texelFetch(bvh_styles, int(slot));

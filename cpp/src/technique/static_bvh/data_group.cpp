@@ -17,9 +17,9 @@ DecalView view_of(const TechniqueInput& input, const Decal& decal) {
 }
 
 GroupKind kind_of(const Layer& layer, const Decal& decal) {
-    const bool together = layer.features.kind == FeatureKind::polygons && !layer.stroke.empty() &&
-                          (layer.outline_order == OutlineOrder::feature ||
-                           layer.outline_mode != OutlineMode::normal);
+    const bool together =
+        layer.features.kind == FeatureKind::polygons && !layer.stroke.empty() &&
+        (layer.outline_order == OutlineOrder::feature || layer.outline_mode != OutlineMode::normal);
     return together ? GroupKind::both : decal.is_stroke() ? GroupKind::strokes : GroupKind::fills;
 }
 
@@ -108,13 +108,13 @@ private:
     // Along a curve, segments come in no order in which translucent lines could be laid over each other.
     void require_drawable(const DecalRun& run) const {
         if (group_.kind == GroupKind::strokes && group_.needs.translucency &&
-            input_.bvh.segment_order == SegmentOrder::hilbert &&
-            input_.bvh.composition == Composition::order)
-            throw Error(ErrorKind::unsupported,
-                        "layer '" + view_of(input_, run.decals[0]).layer->name +
-                            "' has translucent lines, which cannot be drawn in order while segment_order is "
-                            "\"hilbert\"; use segment_order=\"importance\", composition=\"nearest\" or opaque "
-                            "colours");
+            input_.bvh.segment_order == SegmentOrder::hilbert && input_.bvh.composition == Composition::order)
+            throw Error(
+                ErrorKind::unsupported,
+                "layer '" + view_of(input_, run.decals[0]).layer->name +
+                    "' has translucent lines, which cannot be drawn in order while segment_order is "
+                    "\"hilbert\"; use segment_order=\"importance\", composition=\"nearest\" or opaque "
+                    "colours");
     }
 
     void write_objects(const Stage& stage) {

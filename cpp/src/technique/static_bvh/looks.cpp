@@ -99,8 +99,7 @@ void LookWriter::write_set(const Hatch& hatch, double angle) {
     const uint64_t origin = turn_bits(std::fmod(x * lattice_.left + y * lattice_.bottom, 1.0));
     const double half = std::min(0.5 * hatch.width * turns, 0.5);
     const auto word = [](uint64_t bits) { return static_cast<uint32_t>(bits >> 32); };
-    group_.looks.push_back(
-        {word(right), static_cast<uint32_t>(right), word(up), static_cast<uint32_t>(up)});
+    group_.looks.push_back({word(right), static_cast<uint32_t>(right), word(up), static_cast<uint32_t>(up)});
     group_.looks.push_back({word(origin), static_cast<uint32_t>(std::ldexp(half, 32)), 0, 0});
 }
 

@@ -74,8 +74,7 @@ using LookTexel = std::array<uint32_t, 4>;
 static_assert(sizeof(LatticeBox) == 16 && sizeof(Exterior) == 16 && sizeof(LeafEdge) == 16 &&
                   sizeof(Style) == 16 && sizeof(LookTexel) == 16,
               "RGBA32 texels");
-static_assert(sizeof(CellStart) == 8 && sizeof(Segment) == 8 && sizeof(QuadLink) == 8 &&
-                  sizeof(Object) == 8,
+static_assert(sizeof(CellStart) == 8 && sizeof(Segment) == 8 && sizeof(QuadLink) == 8 && sizeof(Object) == 8,
               "RG32 texels");
 
 struct QuadTrees {

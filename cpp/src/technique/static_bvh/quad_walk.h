@@ -26,8 +26,9 @@ inline bool holds(const DecalGroup& group, uint32_t node, LatticePoint point) {
         const LeafEdge& edge = quads.edges[i];
         if (point.y < edge.first_row || point.y >= edge.end_row)
             continue;
-        inside ^= edge.a == CLOSING_EDGE ||
-                  RingEdge(group.ring_vertices[edge.a], group.ring_vertices[edge.b]).crossing(point.y) <= point.x;
+        inside ^=
+            edge.a == CLOSING_EDGE ||
+            RingEdge(group.ring_vertices[edge.a], group.ring_vertices[edge.b]).crossing(point.y) <= point.x;
     }
     return inside;
 }

@@ -19,6 +19,12 @@ constexpr int no_sample = -1;
 // Samples are drawn in strips of the picture, so that they take no more memory than this many pixels.
 constexpr int pixels_at_once = 1 << 19;
 
+// Whether lines are drawn by how much of a pixel they cover, and not by samples.
+bool by_coverage(const View& view, const bvh::DecalGroup& group) {
+    return view.antialias == Antialias::coverage && view.coverage == CoverageRule::thoeny &&
+           group.kind == GroupKind::strokes;
+}
+
 [[noreturn]] void refuse_files() {
     throw Error(ErrorKind::unsupported,
                 "index 'bvh' is not kept on disk; prepare the scene with index 'grid'");
@@ -89,7 +95,10 @@ void StaticBvh::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLi
     const GLfloat nothing[] = {0.0F, 0.0F, 0.0F, 0.0F};
     glClearBufferfv(GL_COLOR, 0, nothing);
     glEnable(GL_BLEND);
-    if (view.antialias == Antialias::coverage)
+    const bool in_samples =
+        std::any_of(prepared_->groups.begin(), prepared_->groups.end(),
+                    [&](const bvh::DecalGroup& group) { return !by_coverage(view, group); });
+    if (view.antialias == Antialias::coverage && in_samples)
         draw_samples(view, gbuffer, programs);
     else
         draw_groups({}, {0, no_sample}, view, gbuffer, programs);
@@ -155,6 +164,7 @@ gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
             flags.insert(flag);
     };
     const bool is_line = group.kind == GroupKind::strokes;
+    const bool hilbert = prepared_->options.segment_order == SegmentOrder::hilbert;
     const bool nearest = is_line && prepared_->options.composition == Composition::nearest;
     add_if(group.kind == GroupKind::fills, "RINGS");
     add_if(group.kind == GroupKind::both, "BOTH");
@@ -166,7 +176,7 @@ gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
     add_if(group.needs.slopes, "SLOPES");
     add_if(group.needs.hatches, "HATCHES");
     add_if(nearest, "NEAREST");
-    add_if(is_line && !nearest && prepared_->options.segment_order == SegmentOrder::hilbert, "UNSORTED");
+    add_if(is_line && !nearest && hilbert, "UNSORTED");
     return flags;
 }
 
@@ -175,11 +185,16 @@ void StaticBvh::draw_group(size_t index, gl::Flags flags, Strip strip, const Vie
     const bvh::DecalGroup& group = prepared_->groups[index];
     const bvh::Lattice& lattice = prepared_->lattice;
     flags.merge(flags_of(group));
+    if (flags.count("IDS") == 0 && by_coverage(view, group)) {
+        flags.erase("SAMPLE");
+        flags.erase("UNSORTED");
+        flags.insert("THOENY");
+    }
     gl::Program& program = programs.get("static_bvh", flags);
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
-    if (flags.count("SAMPLE") != 0 || flags.count("SLOPES") != 0) {
+    if (flags.count("SAMPLE") + flags.count("THOENY") + flags.count("SLOPES") != 0) {
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
     }

@@ -236,8 +236,8 @@ private:
         for (size_t i = 0; i < strokes_.size(); ++i) {
             const Features& features = strokes_[i].decal.layer->features;
             const size_t feature = strokes_[i].decal.feature();
-            for (int64_t part = features.feature_offsets[feature]; part < features.feature_offsets[feature + 1];
-                 ++part)
+            for (int64_t part = features.feature_offsets[feature];
+                 part < features.feature_offsets[feature + 1]; ++part)
                 parts_.push_back({static_cast<uint32_t>(i), static_cast<size_t>(part), 0, 0, 0, 0});
         }
         require_size(parts_.size(), "parts");
@@ -252,8 +252,9 @@ private:
                 chains.clear();
                 const DecalView& decal = strokes_[parts_[i].stroke].decal;
                 const double quantum = decal.style().pattern.period > 0.0 ? lattice_.quantum : 0.0;
-                ChainWriter(group_.needs.corners, quantum, chains).write(way_of(decal.layer->features.part(parts_[i].index),
-                                    decal.layer->features.kind == FeatureKind::polygons, lattice_));
+                ChainWriter(group_.needs.corners, quantum, chains)
+                    .write(way_of(decal.layer->features.part(parts_[i].index),
+                                  decal.layer->features.kind == FeatureKind::polygons, lattice_));
                 require_size(chains.vertices.size(), "vertices");
                 on_part(parts_[i], chains);
             }

@@ -11,7 +11,11 @@ constexpr size_t segments_at_once = 1 << 14;
 
 StrokeBuilder::StrokeBuilder(const TechniqueInput& input, std::vector<StrokeSlot> strokes, DecalGroup& group,
                              MemoryCharge& charge)
-    : input_(input), strokes_(std::move(strokes)), group_(group), charge_(charge), laid_(input.memory, 0, "segments") {
+    : input_(input),
+      strokes_(std::move(strokes)),
+      group_(group),
+      charge_(charge),
+      laid_(input.memory, 0, "segments") {
     stroke_of_slot_.resize(group.styles.size());
     for (uint32_t stroke = 0; stroke < strokes_.size(); ++stroke)
         stroke_of_slot_[strokes_[stroke].slot] = stroke;
@@ -63,8 +67,7 @@ WorkingArray<uint32_t> StrokeBuilder::write_segments(const Stage& stage) {
     CellRecords records = this->records(stage.part(0.0, 0.8));
     grow(group_.segments, records.objects.values.size(), "segments in cells", charge_);
     // The records come in draw order.
-    const bool curve =
-        input_.bvh.segment_order == SegmentOrder::hilbert && group_.kind == GroupKind::strokes;
+    const bool curve = input_.bvh.segment_order == SegmentOrder::hilbert && group_.kind == GroupKind::strokes;
     parallel_for(
         group_.grid.cell_count(), cells_at_once, input_.threads,
         [&](size_t begin, size_t end) {

@@ -63,8 +63,8 @@ Extension beyond_corner(const StrokeStyle& style, Direction own, Direction next)
         outer = std::min(std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0)) / std::max(half, 1e-12), farthest);
         extension.radius = std::min(1.0 / std::max(half, 1e-12), farthest);
     }
-    (cross > 0.0 ? extension.right : extension.left) = std::max(outer, cross > 0.0 ? extension.right
-                                                                                   : extension.left);
+    (cross > 0.0 ? extension.right : extension.left) =
+        std::max(outer, cross > 0.0 ? extension.right : extension.left);
     // An exact reversal has no outer side.
     if (cosine < -1.0 + unsure)
         extension.left = extension.right = std::max(extension.left, extension.right);
@@ -74,8 +74,8 @@ Extension beyond_corner(const StrokeStyle& style, Direction own, Direction next)
 // Lengths in the tangent plane are never less than those on the map, but turns are others.
 Extension beyond_tangent(const StrokeStyle& style) {
     const double sharpest = std::sin(0.5 * style.miter_limit * degrees);
-    const double reach = style.corner == Corner::miter ? std::min(1.0 / std::max(sharpest, 1e-12), farthest)
-                                                       : std::sqrt(2.0);
+    const double reach =
+        style.corner == Corner::miter ? std::min(1.0 / std::max(sharpest, 1e-12), farthest) : std::sqrt(2.0);
     return {reach, reach, std::max(reach, std::sqrt(2.0))};
 }
 
