@@ -90,8 +90,12 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     request_ = request;
     tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
                           request.terrain_error);
-    view_ = {request.width, request.height, scene_->positions, request.antialias,
-             widest_pixel(tiles_, scene_->terrain, request.camera, request.height)};
+    view_ = {request.width,
+             request.height,
+             scene_->positions,
+             request.antialias,
+             widest_pixel(tiles_, scene_->terrain, request.camera, request.height),
+             options_.coverage};
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     choose_rectangles();

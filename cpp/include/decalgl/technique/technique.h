@@ -81,6 +81,9 @@ public:
 };
 
 enum class Antialias { none, coverage };
+// What antialias coverage is: the mean over the pixel's area, or what Thöny et al. 2018, section 3.5, estimate
+// for lines.
+enum class CoverageRule { exact, thoeny };
 
 // Where the camera looks; the uniform block of every pass is bound already (shaders/shared/view_block.h).
 struct View {
@@ -89,6 +92,7 @@ struct View {
     PositionGrid positions;
     Antialias antialias = Antialias::none;
     double widest_pixel = 0.0;  // metres that the farthest pixel is wide, seen head-on
+    CoverageRule coverage = CoverageRule::exact;
 };
 
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y
