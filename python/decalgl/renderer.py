@@ -60,7 +60,7 @@ class Renderer:
     tile: larger pictures are drawn in squares of this many pixels; None: chosen. The picture is the same.
     index: of static layers, "grid" (the faster one), "bvh", "thoeny" or a `BvhIndex`: see `decalgl.indexes`.
     coverage: what antialias="coverage" is: "exact", the mean over each pixel's area, or "thoeny", an estimate for
-        lines after Thöny et al. 2018, with index "bvh" and "thoeny": see docs/techniques/static.md.
+        lines after Thöny et al. 2018: see docs/techniques/static.md.
 
     Call everything but `preprocess`, `save` and `open` from one thread. A call that fails leaves the renderer usable.
     Raises InputError for arguments out of range, UnsupportedError for what this version does not draw.

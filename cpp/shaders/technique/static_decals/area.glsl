@@ -15,6 +15,7 @@ const uint all_samples = 0xFFFFFFFFu;
 
 // Pixels larger than this many cells are sampled point by point.
 const float most_cells_across = 1.5;
+const float most_cells_looked_into = 4.0;  // where strokes are drawn by their estimated coverage
 
 float half_extent(vec2 across) {
     return 0.5 * (abs(across.x) + abs(across.y));
@@ -263,6 +264,21 @@ void add_layer(inout Samples samples, uint mask, vec4 straight) {
 }
 
 #ifdef STYLES
+// Samples that a fill's hatch covers.
+uint shown_samples(Group group, Cell cell, vec2 local, mat2 foot) {
+    uint mask = all_samples;
+#ifdef HATCHES
+    if (has(group.style, STYLE_HATCH)) {
+        vec2 inside = vec2(cell.corner & (BUCKET_QUANTA - 1)) + local;
+        int i = 0;
+        do {
+            if (!fill_shows(group.style, cell.corner >> BUCKET_BITS, inside + foot * sample_offsets[i])) mask &= ~(1u << i);
+        } while (++i < sample_count);
+    }
+#endif
+    return mask;
+}
+
 // Composes the group that ends. `open`: the samples that it is not cut off from.
 void add_group(inout Samples samples, inout uint open, Group group, Cell cell, vec2 local, mat2 foot) {
     if (group.clip) {
@@ -271,15 +287,7 @@ void add_group(inout Samples samples, inout uint open, Group group, Cell cell, v
     }
     uint mask = group.covered & open;
     open = all_samples;
-#ifdef HATCHES
-    if (!group.line && has(group.style, STYLE_HATCH)) {
-        vec2 inside = vec2(cell.corner & (BUCKET_QUANTA - 1)) + local;
-        int i = 0;
-        do {
-            if (!fill_shows(group.style, cell.corner >> BUCKET_BITS, inside + foot * sample_offsets[i])) mask &= ~(1u << i);
-        } while (++i < sample_count);
-    }
-#endif
+    if (!group.line) mask &= shown_samples(group, cell, local, foot);
     if (mask == 0u) return;
     vec4 straight = color_of(group.slot);
 #ifdef BANDS

@@ -59,12 +59,17 @@ bool is_within_cell(vec2 local, mat2 foot, float size) {
 }
 
 Classed classed(LatticePosition centre, mat2 foot) {
+#ifdef THOENY
+    const float cells_across = most_cells_looked_into;
+#else
+    const float cells_across = most_cells_across;
+#endif
     Cell cell = cell_at(centre.quantum);
     vec2 local = vec2(centre.quantum - cell.corner) + centre.fraction;
     float size = float(1 << cell.bits);
     float kind = CLASS_DONE;
     if (!is_within_cell(local, foot, size)) kind = CLASS_CELLS;
-    if (max(length(foot[0]), length(foot[1])) > most_cells_across * size) kind = CLASS_POINTS;
+    if (max(length(foot[0]), length(foot[1])) > cells_across * size) kind = CLASS_POINTS;
 #ifdef LEVELS
     if (spans_texels(foot)) kind = CLASS_LEVELS;
 #endif

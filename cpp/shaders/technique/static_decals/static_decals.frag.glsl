@@ -7,19 +7,23 @@
 // CLASSES        of a picture filtered over the pixels' areas, the first pass: classes of pixels, and those without borders
 // CELLS, POINTS, FROM_LEVELS   the passes of the other classes (area_classes.h); else the pixels' centres are seen
 // LEVELS         levels of detail are there
+// THOENY         of CELLS, in place of samples: strokes by their estimated coverage
 // STYLES         some decal is more than a plain stroke or an even fill: of what it can be, JOINED, PATTERNS, BANDS,
 //                HATCHES, SLOPES
 // IDS            writes 1 + slot of the topmost feature at the centre instead of a colour
-#if !defined(STYLES) && (defined(JOINED) || defined(PATTERNS) || defined(BANDS) || defined(HATCHES) || defined(SLOPES))
+#if !defined(STYLES) && (defined(THOENY) || defined(JOINED) || defined(PATTERNS) || defined(BANDS) || defined(HATCHES) || defined(SLOPES))
 #define STYLES
 #endif
 #include "shared/ray.glsl"
-#if defined(CLASSES) || defined(CELLS) || defined(POINTS) || defined(FROM_LEVELS)
+#if defined(CLASSES) || defined(CELLS) || defined(THOENY) || defined(POINTS) || defined(FROM_LEVELS)
 #define AREA
 #endif
 #include "technique/static_decals/point.glsl"
 #ifdef AREA
 #include "technique/static_decals/classes.glsl"
+#ifdef THOENY
+#include "technique/static_decals/thoeny.glsl"
+#endif
 #endif
 
 uniform usampler2D position_texture;
@@ -53,6 +57,8 @@ void main() {
     Classed result = classed(position, foot);
     color = result.color;
     gl_FragDepth = result.kind;
+#elif defined(THOENY)
+    color = composite_thoeny(position, foot);
 #elif defined(CELLS)
     color = composite_cells(position, foot);
 #elif defined(POINTS)

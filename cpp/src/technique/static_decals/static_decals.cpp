@@ -70,6 +70,7 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const Memory
     cells_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, decals.cells.span());
     texels_ = gl::TextureBuffer::from(memory, "static: words", GL_RGBA32UI, decals.words.span());
     styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, decals.styles.span());
+    kinds_ = gl::TextureBuffer();
     if (has_styles(decals)) {
         kinds_ = gl::TextureBuffer::from(memory, "static: styles", GL_R32UI, decals.kinds.span());
         style_records_ =
@@ -95,7 +96,19 @@ void StaticDecals::make_levels() {
     glGenerateTextureMipmap(levels_.id());
 }
 
+// Plain styles too as records, for the program that knows nothing else.
+void StaticDecals::make_records() {
+    std::vector<uint32_t> kinds;
+    for (const DecalStyle& style : prepared_->styles.span())
+        kinds.push_back(static_cast<uint32_t>(line_scale(style.half_width)));
+    kinds_ = gl::TextureBuffer::from(memory_, "static: styles", GL_R32UI, kinds);
+    style_records_ =
+        gl::TextureBuffer::from(memory_, "static: styles", GL_RGBA32UI, std::vector<StyleTexel>(1));
+}
+
 UpdateReport StaticDecals::update(const View& view) {
+    if (view.antialias == Antialias::coverage && view.coverage == CoverageRule::thoeny && !kinds_)
+        make_records();
     draws_levels_ = needs_levels(view);
     if (draws_levels_ && !levels_)
         make_levels();
@@ -118,31 +131,34 @@ void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::Progra
     else if (prepared_->has_one_color && view.antialias == Antialias::none && !has_styles(*prepared_))
         flags.insert("ONE_COLOR");
     if (view.antialias == Antialias::coverage)
-        draw_areas(flags, gbuffer, programs);
+        draw_areas(flags, view.coverage, gbuffer, programs);
     else
         draw_full_screen(std::move(flags), gbuffer, programs);
 }
 
 // The class of each pixel first, then those of each class (area_classes.h).
-void StaticDecals::draw_areas(const gl::Flags& flags, const GBufferView& gbuffer,
+void StaticDecals::draw_areas(const gl::Flags& flags, CoverageRule rule, const GBufferView& gbuffer,
                               gl::ProgramLibrary& programs) {
-    const auto draw_class = [&](const char* flag) {
+    const std::string classes = "CLASSES", cells = "CELLS";
+    const auto draw_class = [&](const std::string& flag) {
         gl::Flags all = flags;
         all.insert(flag);
+        if (rule == CoverageRule::thoeny && (flag == classes || flag == cells))
+            all.insert("THOENY");
         if (draws_levels_)
             all.insert("LEVELS");
         draw_full_screen(std::move(all), gbuffer, programs);
     };
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
-    draw_class("CLASSES");
+    draw_class(classes);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_EQUAL);
-    const auto draw_rest = [&](const char* flag, double kind) {
+    const auto draw_rest = [&](const std::string& flag, double kind) {
         glDepthRange(kind, kind);
         draw_class(flag);
     };
-    draw_rest("CELLS", CLASS_CELLS);
+    draw_rest(cells, CLASS_CELLS);
     draw_rest("POINTS", CLASS_POINTS);
     if (draws_levels_)
         draw_rest("FROM_LEVELS", CLASS_LEVELS);
@@ -158,8 +174,8 @@ void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::Program
 
 void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
                                     gl::ProgramLibrary& programs) {
-    const bool one_width =
-        prepared_->has_lines && prepared_->narrowest == prepared_->widest && !has_styles(*prepared_);
+    const bool styled = has_styles(*prepared_) || flags.count("THOENY") != 0;
+    const bool one_width = prepared_->has_lines && prepared_->narrowest == prepared_->widest && !styled;
     add_style_flags(*prepared_, flags);
     if (prepared_->has_lines)
         flags.insert("LINES");
@@ -186,7 +202,7 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     texels_.bind(4);
     program.set("decal_styles", 5);
     styles_.bind(5);
-    if (has_styles(*prepared_)) {
+    if (styled) {
         program.set("decal_kinds", 7);
         kinds_.bind(7);
         program.set("style_records", 8);

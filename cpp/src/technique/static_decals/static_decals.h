@@ -26,7 +26,8 @@ public:
 private:
     bool needs_levels(const View& view) const;
     void make_levels();
-    void draw_areas(const gl::Flags& flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void make_records();
+    void draw_areas(const gl::Flags& flags, CoverageRule rule, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     void draw_full_screen(gl::Flags flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
 
     std::shared_ptr<const PreparedDecals> prepared_;
