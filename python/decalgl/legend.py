@@ -1,0 +1,396 @@
+"""Legends: a layer's colours, dashes, casings, outlines and hatches as matplotlib shows them.
+
+handles, scalar_mappable, draw_on    for matplotlib's axes, with the names and the meaning of GeoPandas
+overlay                              the legends of several layers, beside each other on a picture
+
+     +-------------------+-------+     Boxes go from the upper right corner down, then into the next column
+     |                   | kind  |     to the left. matplotlib draws them on nothing, and they are laid over
+     |                   | # wood|     the picture, whose other pixels stay as they are.
+     |                   +-------+
+     |                   |height |
+     +-------------------+-------+
+"""
+
+from __future__ import annotations
+
+import inspect
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .errors import StyleError, UnsupportedError, close_matches, warn
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from ._colors import Rgba
+    from .layer import Layer
+    from .strokes import Hatch, Stroke, StrokeStyle
+
+DPI = 100
+MARGIN = 8  # pixels between boxes, and between boxes and the picture's border
+# Lines have widths in metres and legends have none: the widest line of a layer is drawn this wide, in points.
+WIDEST_LINE, THINNEST_LINE = 5.0, 0.75
+WIDEST_OUTLINE = 2.0
+LONGEST_PERIOD = 10.0  # points, so that a key shows a pattern twice
+BAR_SIZE = (0.14, 1.6)  # inches, across and along
+# What `Figure.colorbar` takes only where it makes its own place.
+PLACING = ("ax", "cax", "use_gridspec", "shrink", "aspect", "fraction", "pad", "anchor", "panchor")
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A line of a legend: its text, its colour from 0 to 1, and a feature that looks like it, None without any."""
+
+    label: str
+    color: Rgba
+    feature: int | None
+
+
+def handles(layer: Layer) -> list[Any]:
+    """Artists with labels: see `Layer.legend_handles`."""
+    with _matplotlib():
+        make = _patch if layer.kind == "polygons" else _line
+        return [make(layer, entry) for entry in _entries(layer)]
+
+
+def scalar_mappable(layer: Layer) -> Any:
+    """See `Layer.scalar_mappable`."""
+    with _matplotlib():
+        from matplotlib.cm import ScalarMappable
+    coloring = layer.legend_coloring
+    if coloring.kind != "continuous":
+        raise StyleError(
+            f"Layer {layer.name!r} is not coloured by numbers, so it has no colormap. Use layer.legend_handles()."
+        )
+    return ScalarMappable(norm=coloring.norm, cmap=coloring.cmap)
+
+
+def draw_on(layer: Layer, ax: Any, legend_kwds: Mapping[str, Any]) -> Any:
+    """See `Layer.legend`."""
+    if ax is None:
+        with _matplotlib():
+            from matplotlib import pyplot as plt
+        ax = plt.gca()
+    keywords = _keywords(layer, legend_kwds)
+    with _refusals(layer):
+        if layer.legend_coloring.kind == "continuous":
+            return ax.figure.colorbar(scalar_mappable(layer), ax=ax, **keywords)
+        return ax.legend(handles=_relabelled(layer, handles(layer), keywords), **keywords)
+
+
+def require_drawable(layer: Layer) -> None:
+    """Warns where a legend is asked for that cannot be drawn. Raises StyleError for unknown legend_kwds."""
+    if layer.legend_coloring.kind == "listed":
+        warn(
+            f"Layer {layer.name!r}: colours that are given row by row have no names for a legend, so none will be"
+            " drawn. Colour by column=, or leave legend=True out."
+        )
+    _keywords(layer, {})
+
+
+def overlay(layers: Sequence[Layer], size: tuple[int, int]) -> NDArray[np.uint8]:
+    """The layers' legends as uint8 (height, width, 4), sRGB with straight alpha, nothing elsewhere.
+
+    Warns where they do not all fit. Raises StyleError for legend_kwds that matplotlib refuses.
+    """
+    with _matplotlib():
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    width, height = size
+    figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="none")
+    canvas: Any = FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    column = _Column(width, height)
+    plain: list[Any] = []
+    for layer in layers:
+        keywords = _keywords(layer, {})
+        with _refusals(layer):
+            if layer.legend_coloring.kind == "continuous":
+                plain += handles(layer)
+                _place_bar(figure, layer, keywords, column)
+            elif layer.legend_coloring.kind == "single" and not keywords:
+                plain += handles(layer)
+            elif layer.legend_coloring.kind != "listed":
+                _place_box(axes, _relabelled(layer, handles(layer), keywords), keywords, column)
+    if plain:
+        _place_box(axes, plain, {}, column)
+    if column.crowded:
+        warn(
+            f"The legends do not fit into a picture of {width} x {height} pixels. Draw a larger one, leave some out, or"
+            " make them smaller with legend_kwds={'fontsize': 'small', 'ncols': 2}."
+        )
+    canvas.draw()
+    return np.array(canvas.buffer_rgba())
+
+
+class _Column:
+    """Where the next box goes: pixels from the upper right corner."""
+
+    def __init__(self, width: int, height: int) -> None:
+        self._limits = (width, height)
+        self._right, self._top, self._widest = MARGIN, MARGIN, 0
+        self.crowded = False
+
+    def take(self, width: float, height: float) -> tuple[float, float]:
+        """The right and upper border of a box of this size, in pixels from the lower left corner."""
+        if self._top > MARGIN and self._top + height + MARGIN > self._limits[1]:
+            self._right, self._top, self._widest = self._right + self._widest + MARGIN, MARGIN, 0
+        right, top = self._limits[0] - self._right, self._limits[1] - self._top
+        self.crowded |= right - width < 0 or top - height < 0
+        self._top += int(np.ceil(height)) + MARGIN
+        self._widest = max(self._widest, int(np.ceil(width)))
+        return right, top
+
+
+def _place_box(axes: Any, shown: list[Any], keywords: dict[str, Any], column: _Column) -> None:
+    """A legend in the next place, or where its keywords say."""
+    placed = "loc" in keywords or "bbox_to_anchor" in keywords
+    own = {} if placed else {"loc": "upper right", "borderaxespad": 0.0}
+    box = axes.legend(handles=shown, **{**own, **keywords})
+    axes.add_artist(box)
+    extent = box.get_window_extent(axes.figure.canvas.get_renderer())
+    if not placed:
+        right, top = column.take(extent.width, extent.height)
+        width, height = axes.figure.bbox.size
+        box.set_bbox_to_anchor((right / width, top / height), axes.transAxes)
+
+
+def _place_bar(figure: Any, layer: Layer, keywords: dict[str, Any], column: _Column) -> None:
+    """A colorbar with its ticks and label on a panel like those of legends, in the next place."""
+    from matplotlib.patches import FancyBboxPatch
+
+    level = keywords.get("orientation") == "horizontal" or keywords.get("location") in ("top", "bottom")
+    across, along = (size * DPI for size in BAR_SIZE)
+    bar_width, bar_height = (along, across) if level else (across, along)
+    width, height = figure.bbox.size
+    axes = figure.add_axes((0.0, 0.0, bar_width / width, bar_height / height), zorder=2)
+    kept = {key: value for key, value in keywords.items() if key not in PLACING}
+    figure.colorbar(scalar_mappable(layer), cax=axes, **kept)
+    around = axes.get_tightbbox(figure.canvas.get_renderer())
+    pad = 6.0
+    right, top = column.take(around.width + 2 * pad, around.height + 2 * pad)
+    x, y = right - pad - around.x1, top - pad - around.y1
+    axes.set_position((x / width, y / height, bar_width / width, bar_height / height))
+    corner = (x + around.x0 - pad, y + around.y0 - pad)
+    panel = FancyBboxPatch(
+        corner, around.width + 2 * pad, around.height + 2 * pad, boxstyle="round,pad=0,rounding_size=3",
+        facecolor="white", edgecolor="0.8", alpha=0.8, transform=None, zorder=1,
+    )  # fmt: skip
+    figure.add_artist(panel)
+
+
+def _keywords(layer: Layer, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The layer's legend_kwds, those of a call over them, and defaults. Raises StyleError for unknown ones."""
+    coloring = layer.legend_coloring
+    keywords = {**layer.coloring.legend_kwds, **given}
+    known = _known_keywords(coloring.kind == "continuous")
+    unknown = [key for key in keywords if key not in known]
+    if unknown:
+        raise StyleError(
+            f"Layer {layer.name!r}: legend_kwds has the unknown key {unknown[0]!r}."
+            f"{close_matches(unknown[0], known)} It takes what matplotlib's"
+            f" {'Figure.colorbar' if coloring.kind == 'continuous' else 'Axes.legend'} takes."
+        )
+    if coloring.kind == "continuous":
+        defaults: dict[str, Any] = {
+            "extend": coloring.extend,
+            "label": coloring.title,
+            "alpha": coloring.alpha,
+        }
+    else:
+        defaults = {"title": coloring.title} if coloring.title else {}
+    return {**defaults, **keywords}
+
+
+def _known_keywords(continuous: bool) -> list[str]:
+    with _matplotlib():
+        from matplotlib.colorbar import Colorbar
+        from matplotlib.legend import Legend
+    if continuous:
+        names = [*inspect.signature(Colorbar.__init__).parameters, *PLACING, "location", "orientation"]
+        return [name for name in names if name not in ("self", "ax", "cax", "mappable", "kwargs")]
+    names = list(inspect.signature(Legend.__init__).parameters)
+    return [name for name in names if name not in ("self", "parent", "handles")]
+
+
+def _relabelled(layer: Layer, shown: list[Any], keywords: dict[str, Any]) -> list[Any]:
+    """The handles with the labels of legend_kwds, which are taken out of the keywords."""
+    labels = keywords.pop("labels", None)
+    if labels is None:
+        return shown
+    texts = [str(label) for label in labels]
+    own = layer.legend_coloring.labels or (layer.name,)
+    if len(texts) != len(shown):
+        raise StyleError(
+            f"Layer {layer.name!r}: legend_kwds has {len(texts)} labels, but the legend has {len(shown)} entries:"
+            f" {', '.join(own)}. Give as many."
+        )
+    for handle, text in zip(shown, texts, strict=True):
+        handle.set_label(text)
+    return shown
+
+
+def _entries(layer: Layer) -> list[_Entry]:
+    coloring = layer.legend_coloring
+    first = 0 if len(layer.features) else None
+    if coloring.kind == "listed":
+        return []
+    colors = [_share(color) for color in coloring.label_colors]
+    if coloring.kind == "single":
+        return [_Entry(layer.name, colors[0], first)]
+    places, features = np.unique(coloring.label_of, return_index=True)
+    feature_of = dict(zip(places.tolist(), features.tolist(), strict=True))
+    return [
+        _Entry(label, color, feature_of.get(place))
+        for place, (label, color) in enumerate(zip(coloring.labels, colors, strict=True))
+    ]
+
+
+def _patch(layer: Layer, entry: _Entry) -> Any:
+    from matplotlib.patches import Patch
+
+    feature = 0 if entry.feature is None else entry.feature
+    if layer.legend_coloring is layer.coloring:
+        color: Any = entry.color
+    else:
+        color = (
+            _share(layer.fill.colors[feature]) if layer.fill is not None and len(layer.features) else "none"
+        )
+    hatch = _hatch_of(layer, feature)
+    patch = Patch(facecolor="none" if hatch else color, edgecolor="none", label=entry.label)
+    if hatch is not None:
+        patch.set_hatch(_hatch_symbol(hatch))
+        # Before matplotlib 3.11 hatches have the colour of the edge.
+        getattr(patch, "set_hatchcolor", patch.set_edgecolor)(color)
+        patch.set_linewidth(0.0)
+    stroke = layer.stroke
+    if stroke is None or not len(layer.features) or not stroke.colors[feature, 3]:
+        return patch
+    edge = entry.color if layer.legend_coloring is not layer.coloring else _share(stroke.colors[feature])
+    width = _points(stroke.widths[feature], stroke, WIDEST_OUTLINE)
+    patch.set_edgecolor(edge)
+    patch.set_linewidth(width)
+    patch.set_linestyle(_linestyle(_style_of(stroke, feature), stroke.widths[feature], width))
+    return patch
+
+
+def _line(layer: Layer, entry: _Entry) -> Any:
+    from matplotlib import patheffects
+    from matplotlib.lines import Line2D
+
+    stroke = layer.stroke
+    if stroke is None or not len(layer.features):
+        return Line2D([], [], color=entry.color, label=entry.label)
+    feature = 0 if entry.feature is None else entry.feature
+    style = _style_of(stroke, feature)
+    casing = layer.casing
+    width = _points(stroke.widths[feature], stroke, WIDEST_LINE)
+    line = Line2D([], [], color=entry.color, linewidth=width, label=entry.label)
+    line.set_linestyle(_linestyle(style, stroke.widths[feature], width))
+    caps: dict[str, Any] = {"round": "round", "butt": "butt", "square": "projecting"}
+    line.set_solid_capstyle(caps[style.cap])
+    line.set_dash_capstyle("butt")
+    effects: list[Any] = []
+    if casing is not None and casing.colors[feature, 3]:
+        share = casing.widths[feature] / stroke.widths[feature]
+        red, green, blue, alpha = _share(casing.colors[feature])
+        effects.append(
+            patheffects.Stroke(
+                linewidth=min(width * share, width + 6.0), foreground=(red, green, blue), alpha=alpha,
+                dashes={"dash_offset": 0.0, "dash_list": None},
+            )
+        )  # fmt: skip
+    for band in reversed(style.bands):
+        red, green, blue, alpha = (channel / 255.0 for channel in band.color)
+        effects.append(
+            patheffects.Stroke(
+                linewidth=width * band.reach, foreground=(red, green, blue), alpha=alpha * entry.color[3]
+            )
+        )
+    if effects:
+        line.set_path_effects(effects if style.bands else [*effects, patheffects.Normal()])
+    return line
+
+
+def _share(color: NDArray[np.uint8]) -> Rgba:
+    red, green, blue, alpha = (color / 255.0).tolist()
+    return red, green, blue, alpha
+
+
+def _style_of(stroke: Stroke, feature: int) -> StrokeStyle:
+    return stroke.styles[0 if stroke.style_of is None else stroke.style_of[feature]]
+
+
+def _hatch_of(layer: Layer, feature: int) -> Hatch | None:
+    fill = layer.fill
+    if fill is None:
+        return None
+    if fill.hatch_of is None:
+        return fill.hatches[0]
+    return fill.hatches[fill.hatch_of[feature]] if len(fill.hatch_of) else None
+
+
+def _hatch_symbol(hatch: Hatch) -> str:
+    """matplotlib's hatch of the nearest angle."""
+    turn = round(hatch.angle / 45.0) % 4
+    return (("++", "xx")[turn % 2] if hatch.crossed else ("--", "//", "||", "\\\\")[turn]) * 2
+
+
+def _points(width: float, stroke: Stroke, most: float) -> float:
+    """How wide a line is in a legend."""
+    return max(THINNEST_LINE, most * float(width) / float(stroke.widths.max()))
+
+
+def _linestyle(style: StrokeStyle, width: float, points: float) -> Any:
+    """matplotlib's (offset, lengths on and off), in multiples of the line's width there."""
+    pattern = style.pattern
+    if pattern is None:
+        return "solid"
+    runs = _runs((mark.begin, mark.end) for mark in pattern.marks)
+    lengths = []
+    for (begin, end), (following, _) in zip(
+        runs, [*runs[1:], (runs[0][0] + pattern.period, 0.0)], strict=True
+    ):
+        lengths += [end - begin, following - end]
+    # In points a key shows the pattern to scale, or smaller where it would not fit.
+    scale = min(points / float(width), LONGEST_PERIOD / pattern.period) / points
+    offset = (pattern.offset - runs[0][0]) * scale
+    return offset, [length * scale for length in lengths]
+
+
+def _runs(marks: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Marks in order, those that touch as one."""
+    runs: list[tuple[float, float]] = []
+    for begin, end in sorted(marks):
+        if runs and begin <= runs[-1][1]:
+            runs[-1] = (runs[-1][0], max(end, runs[-1][1]))
+        else:
+            runs.append((begin, end))
+    return runs
+
+
+@contextmanager
+def _matplotlib() -> Iterator[None]:
+    try:
+        yield
+    except ImportError as error:
+        raise UnsupportedError(
+            f"Legends are drawn by matplotlib, which cannot be imported ({error}). Install it: pip install matplotlib"
+        ) from error
+
+
+@contextmanager
+def _refusals(layer: Layer) -> Iterator[None]:
+    """What matplotlib refuses, as an error that names the layer."""
+    try:
+        yield
+    except (StyleError, UnsupportedError):
+        raise
+    except (TypeError, ValueError, AttributeError, KeyError) as error:
+        raise StyleError(f"Layer {layer.name!r}: matplotlib refuses legend_kwds: {error}.") from error
