@@ -156,8 +156,10 @@ def _hashable(value: Any) -> Any:
 
 
 def _compact(values: list[Value], codes: NDArray[np.int64]) -> Choices[Value]:
-    """The values that some feature has."""
+    """The values that some feature has, each once."""
     used, compact = np.unique(codes, return_inverse=True)
-    if len(used) <= 1:
-        return Choices((values[int(used[0]) if len(used) else 0],))
-    return Choices(tuple(values[code] for code in used.tolist()), compact.astype(np.int64))
+    place: dict[Value, int] = {}
+    places = [place.setdefault(values[code], len(place)) for code in used.tolist()]
+    if len(place) <= 1:
+        return Choices(tuple(place) or (values[0],))
+    return Choices(tuple(place), np.array(places, dtype=np.int64)[compact])

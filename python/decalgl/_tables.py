@@ -95,6 +95,10 @@ class StrictTable:
         value = self.value(key)
         return None if value is None else StrictTable(value, name or f"[{key}]", self.file)
 
+    def inner(self, values: Any, name: str) -> StrictTable:
+        """A table that lies deeper in this file."""
+        return StrictTable(values, name, self.file)
+
     def names(self) -> list[str]:
         """All keys there are."""
         return list(self._values)

@@ -231,7 +231,7 @@ class Scene:
             width, the last to 1. They take the place of the line's colour, whose opacity they keep.
         slope_correction: None, widths as they are on the map; "tangent", as they are on the slope; "thoeny",
             narrower on slopes seen from the side (Thöny 2018).
-        widest: metres that lines may be widened to later, by `Renderer.restyle`, without preparing anew.
+        widest: metres that lines may be widened to later without preparing anew.
         order: "feature" (later on top), "size" (longer on top), or a column or numbers (higher on top).
         The other arguments, and the errors, are those of `add_polygons`; StyleError too for widths that are
         not positive, UnsupportedError for what this version does not draw.

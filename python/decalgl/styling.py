@@ -60,7 +60,7 @@ class LineKeywords:
 
     def check(self, layer_name: str) -> None:
         """Raises StyleError and UnsupportedError for all that can be told without the data."""
-        with _named(layer_name):
+        with _named(f"Layer {layer_name!r}"):
             _shared_style(self.stroke, "")
             if self.casing is not None and not isinstance(self.casing, Casing):
                 raise _wrong_type("casing", self.casing, "Casing(width=2)")
@@ -68,7 +68,7 @@ class LineKeywords:
     def resolve(self, rows: LayerRows) -> Looks:
         """Raises StyleError, ColumnError and InputError that name the layer, the keyword and the row."""
         rows = replace(rows, column=self.colors.column)
-        with _named(rows.name):
+        with _named(f"Layer {rows.name!r}"):
             coloring = _coloring(self.colors, rows, self.stroke)
             widths = _widths(self.stroke.width, rows, "")
             stroke = _stroke(self.stroke, rows, "", coloring.colors, widths)
@@ -80,9 +80,8 @@ class LineKeywords:
             rows = replace(rows, column=look.column)
         sides = _widths(look.width, rows, "casing ")
         keywords = replace(self.stroke, dash=look.dash, bands=None, widest=None)
-        colors = resolve_colors(
-            rows.attributes.count, rows.attributes, rows=rows.rows, **vars(color_keywords(look))
-        ).colors
+        with _named("casing"):
+            colors = _coloring(color_keywords(look), rows, None).colors
         casing = _stroke(
             keywords, rows, "casing ", _without(colors, coloring.left_out), stroke.widths + 2.0 * sides
         )
@@ -103,7 +102,7 @@ class PolygonKeywords:
         """Raises StyleError and UnsupportedError for all that can be told without the data."""
         if self.outline is None:
             return
-        with _named(layer_name):
+        with _named(f"Layer {layer_name!r}"):
             if not isinstance(self.outline, Outline):
                 raise _wrong_type("outline", self.outline, "Outline(width=2, width_units='m')")
             _shared_style(stroke_keywords(self.outline), "outline ")
@@ -113,7 +112,7 @@ class PolygonKeywords:
     def resolve(self, rows: LayerRows) -> Looks:
         """Raises StyleError, ColumnError and InputError that name the layer, the keyword and the row."""
         rows = replace(rows, column=self.colors.column)
-        with _named(rows.name):
+        with _named(f"Layer {rows.name!r}"):
             coloring = _coloring(self.colors, rows, self.hatch)
             fill = _fill(self.hatch, rows, coloring.colors)
             if self.outline is None:
@@ -124,7 +123,8 @@ class PolygonKeywords:
         if outline.column is not None:
             rows = replace(rows, column=outline.column)
         keywords = stroke_keywords(outline)
-        own = _coloring(color_keywords(outline), rows, keywords)
+        with _named("outline"):
+            own = _coloring(color_keywords(outline), rows, keywords)
         colors = _without(own.colors, coloring.left_out)
         stroke = _stroke(keywords, rows, "outline ", colors, _widths(outline.width, rows, "outline "))
         return Looks(
@@ -137,14 +137,14 @@ class PolygonKeywords:
 
 
 @contextmanager
-def _named(layer_name: str) -> Iterator[None]:
-    """Style errors inside begin with the layer's name."""
+def _named(what: str) -> Iterator[None]:
+    """Style errors inside begin with what they are about, where they do not say so already."""
     try:
         yield
     except (StyleError, UnsupportedError) as error:
-        if repr(layer_name) in str(error):
+        if what in str(error):
             raise
-        raise type(error)(f"Layer {layer_name!r}: {error}") from error
+        raise type(error)(f"{what}: {error}") from error
 
 
 def _wrong_type(keyword: str, value: Any, example: str) -> StyleError:
@@ -269,8 +269,8 @@ def _styles(
 ) -> tuple[tuple[StrokeStyle, ...], NDArray[np.uint32] | None]:
     """The distinct styles, and each feature's place among them."""
     shared = _shared_style(keywords, what)
-    corners = choose(rows, f"{what}corner", keywords.corner, _word(CORNERS), CORNERS.__contains__)
-    caps = choose(rows, f"{what}cap", keywords.cap, _word(CAPS), CAPS.__contains__)
+    corners = choose(rows, f"{what}corner", keywords.corner, _word(CORNERS), _is_word(CORNERS))
+    caps = choose(rows, f"{what}cap", keywords.cap, _word(CAPS), _is_word(CAPS))
     dashes = choose(rows, f"{what}dash", keywords.dash, parse_dash, _is_one_dash)
     if len(widths) == 0:
         return (shared,), None
@@ -311,9 +311,10 @@ def _widths_of_dashes(
 
 def _word(known: tuple[str, ...]) -> Callable[[Any], Any]:
     """A parser of one of a few words; the first is what rows without one have."""
+    is_known = _is_word(known)
 
     def parse(value: Any) -> Any:
-        if value is not None and value not in known:
+        if value is not None and not is_known(value):
             hint = close_matches(value, known)
             raise StyleError(
                 f"{value!r} is not known.{hint} Give one of {', '.join(known)}, or a column's name."
@@ -321,6 +322,10 @@ def _word(known: tuple[str, ...]) -> Callable[[Any], Any]:
         return known[0] if value is None else value
 
     return parse
+
+
+def _is_word(known: tuple[str, ...]) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, str) and value in known
 
 
 def _is_one_dash(value: Any) -> bool:
