@@ -22,7 +22,7 @@ class StrictTable:
         self.name = name
         self.file = file
         if not isinstance(values, Mapping):
-            raise InputError(f"{file}: {name} must be a table, but it is {values!r}.")
+            raise InputError(f"{file}, {name}: must be a table, but it is {values!r}.")
         self._values = dict(values)
         self._known: list[str] = []
 

@@ -333,9 +333,9 @@ def _painted_by_number(
     chosen = colormap("viridis" if cmap is None else cmap)
     missing = np.isnan(numbers)
     finite = numbers[np.isfinite(numbers)]
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     scale: Any = Normalize()
     if norm is None:
+        low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
         scale.vmin = low if vmin is None else _limit(vmin, "vmin")
         scale.vmax = high if vmax is None else _limit(vmax, "vmax")
         if scale.vmin > scale.vmax:
@@ -357,13 +357,13 @@ def _painted_by_number(
             " Give a norm for all values, or leave these rows out."
         )
     rgba = np.array(chosen(shares), dtype=np.float64).reshape(-1, 4)
-    extend = _extend(scale, low, high)
+    extend = _extend(scale, numbers[~missing & ~hidden])
     return _Painted(rgba, missing, "continuous", cmap=chosen, norm=scale, extend=extend, hidden=hidden)
 
 
 def _scaled(norm: Any, finite: NDArray[np.float64], vmin: float | None, vmax: float | None) -> Any:
-    """A copy of the normalisation with both limits set."""
-    from matplotlib.colors import Normalize
+    """A copy of the normalisation with both limits set. Raises StyleError, and ValueError where none fit."""
+    from matplotlib.colors import LogNorm, Normalize
 
     if not isinstance(norm, Normalize):
         raise StyleError(
@@ -379,16 +379,21 @@ def _scaled(norm: Any, finite: NDArray[np.float64], vmin: float | None, vmax: fl
         elif own != limit:
             raise StyleError(f"{name}={limit:g} is given, but norm= has {name}={own:g}. Leave one out.")
     if not scale.scaled():
-        scale.autoscale_None(finite if finite.size else np.array([0.0, 1.0]))
+        scale.autoscale_None(finite if finite.size else np.array([1.0, 10.0]))
+    if isinstance(scale, LogNorm) and not (scale.vmin or 0.0) > 0.0:
+        raise ValueError("a logarithm needs values above 0")
+    for name, given in (("vmin", vmin), ("vmax", vmax)):
+        if given is not None and getattr(scale, name) != given:
+            raise ValueError(f"with {name}={given:g} its limits are out of order")
     return scale
 
 
-def _extend(norm: Any, low: float, high: float) -> Extend:
+def _extend(norm: Any, values: NDArray[np.float64]) -> Extend:
     """Which limits of the normalisation values lie beyond."""
     own: Extend | None = getattr(norm, "extend", None)
     if own is not None and own != "neither":
         return own
-    below, above = low < norm.vmin, high > norm.vmax
+    below, above = bool((values < norm.vmin).any()), bool((values > norm.vmax).any())
     return "both" if below and above else "min" if below else "max" if above else "neither"
 
 
