@@ -2,6 +2,7 @@
 
 width = 6 | "column" | { road = 6, track = 3 }      corner, cap likewise, with words
 dash = "dashed" | [10, 5] | { arrows = {...} } | { stipple = {...} } | { period, marks, ... } | { track = "dashed" }
+norm = "log" | { power = 0.5 } | { center = 0 } | { boundaries = [0, 10, 100] }
 hatch = { spacing, width, ... } | { wood = {...} }  outline = { width, ... }     casing = { width, ... }
 """
 
@@ -9,7 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from .errors import StyleError
+from ._colors import colormap
+from ._numbers import is_number
 from .patterns import Pattern
 from .strokes import Hatch
 from .styles import Casing, Outline
@@ -59,10 +61,39 @@ def _colors(table: StrictTable) -> dict[str, Any]:
         color=table.text("color"),
         vmin=table.number("vmin"),
         vmax=table.number("vmax"),
+        norm=_norm(table, cmap),
         alpha=table.number("alpha"),
         categorical=table.flag("categorical"),
         missing_kwds=_plain_table(table, "missing_kwds"),
     )
+
+
+def _norm(layer: StrictTable, cmap: Any) -> Any:
+    """A normalisation of matplotlib's; its limits are vmin and vmax."""
+    value = layer.value("norm")
+    if value is None:
+        return None
+    from matplotlib import colors
+
+    if value == "log":
+        return colors.LogNorm()
+    if not isinstance(value, dict) or len(value) != 1:
+        raise layer.error(
+            f"norm must be 'log', {{ power = 0.5 }}, {{ center = 0 }} or {{ boundaries = [0, 10, 100] }}, but it is"
+            f" {value!r}."
+        )
+    table = layer.inner(value, f"{layer.name} norm")
+    power, center, boundaries = table.number("power"), table.number("center"), table.value("boundaries")
+    table.finish()
+    if power is not None:
+        return colors.PowerNorm(power)
+    if center is not None:
+        return colors.TwoSlopeNorm(center)
+    listed = boundaries if isinstance(boundaries, list) else []
+    if len(listed) < 2 or not all(map(is_number, listed)) or sorted(set(listed)) != listed:
+        raise table.error(f"boundaries must be an array of numbers that rise, but it is {boundaries!r}.")
+    size = colormap(cmap if isinstance(cmap, str) else "viridis").N
+    return _made(table, colors.BoundaryNorm, listed, size)
 
 
 def _plain_table(table: StrictTable, key: str) -> dict[str, Any] | None:
@@ -180,7 +211,7 @@ def _made(table: StrictTable, make: Callable[..., Made], *values: Any, **keyword
     """What `make` makes; its errors name the table."""
     try:
         return make(*values, **keywords)
-    except StyleError as error:
+    except (ValueError, TypeError) as error:
         raise table.error(str(error)) from error
 
 

@@ -299,7 +299,7 @@ class Scene:
         x0, y0, x1, y1 = self.terrain.bounds
         widest = WIDEST_LINE * (max(x1 - x0, y1 - y0) or 1.0)
         resolved = looks.resolve(LayerRows(name, attributes, table.rows, widest))
-        draw_order = _draw_order(order, table, attributes)
+        draw_order = draw_order_of(order, table, attributes)
         layer = Layer(name, len(self._layers), table, draw_order, **vars(resolved))
         if layer.coloring.legend:
             require_drawable(layer)
@@ -355,7 +355,8 @@ def _require_technique(layer_name: str, technique: str) -> None:
     )
 
 
-def _draw_order(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
+def draw_order_of(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
+    """Features from bottom to top: "feature", "size", a column or numbers. Raises ColumnError, InputError."""
     if isinstance(order, str) and order == "feature":
         return np.arange(len(table), dtype=np.int64)
     if isinstance(order, str) and order == "size":

@@ -4,8 +4,8 @@
                                      exaggeration, crs, band
     [relief]                         color, cmap, vmin, vmax, azimuth, altitude, strength, on_layers
     [[layers]]                       type = "polygons" or "lines", path, name, layer, crs,
-                                     column, cmap, color, vmin, vmax, alpha, categorical, legend, legend_kwds,
-                                     missing_kwds, order
+                                     column, cmap, color, vmin, vmax, norm, alpha, categorical, legend,
+                                     legend_kwds, missing_kwds, order
                                      lines: width, width_units, corner, cap, miter_limit, dash, bands, widest,
                                      slope_correction, casing (a table); polygons: hatch, outline (tables)
     [views.NAME]                     look_at  = { eye = [x, y, z], target = [x, y, z], fov, crs }

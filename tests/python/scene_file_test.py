@@ -7,7 +7,9 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from matplotlib.colors import BoundaryNorm, LogNorm, PowerNorm, TwoSlopeNorm
 
+from decalgl.coloring import resolve_colors
 from decalgl.errors import DecalError, FileError, InputError
 from decalgl.patterns import Pattern
 from decalgl.scene_file import PictureOptions, data_path, load_scene, read_scene_file
@@ -163,9 +165,38 @@ def test_styles_of_polygons_are_described(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("norm = 'log'\nvmin = 1\nvmax = 100", LogNorm(1, 100)),
+        ("norm = { power = 0.5 }\nvmax = 9", PowerNorm(0.5, vmax=9)),
+        ("norm = { center = 2 }\nvmin = 0\nvmax = 8", TwoSlopeNorm(2, 0, 8)),
+        ("norm = { boundaries = [0, 5, 9] }\ncmap = 'Set2'", BoundaryNorm([0, 5, 9], 8)),
+    ],
+)
+def test_transfer_functions_are_described(tmp_path: Path, text: str, expected: Any) -> None:
+    keywords = layer_keywords(tmp_path, "polygons", text)
+    values = [1.0, 2.0, 8.0]
+    coloring = resolve_colors(3, column=values, **keywords)
+    wanted = resolve_colors(3, column=values, cmap=keywords.get("cmap"), norm=expected)
+    assert type(coloring.norm) is type(expected)
+    assert coloring.colors.tolist() == wanted.colors.tolist()
+    assert (coloring.vmin, coloring.vmax) == (wanted.vmin, wanted.vmax)
+
+
+@pytest.mark.parametrize(
     ("kind", "text", "expected"),
     [
         ("lines", "hatch = { spacing = 2, width = 1 }", "unknown key 'hatch'"),
+        ("lines", "norm = 'logg'", "norm must be 'log', { power = 0.5 }"),
+        (
+            "polygons",
+            "norm = { boundaries = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9] }\ncmap = 'Set2'",
+            "number 1 norm: ",
+        ),
+        ("lines", "norm = { boundaries = 3 }", "number 1 norm: boundaries must be an array"),
+        ("lines", "norm = { centre = 0 }", "norm: unknown key 'centre'. Did you mean 'center'"),
+        ("lines", "norm = { boundaries = [3, 2, 1] }", "number 1 norm: boundaries must be an array"),
+        ("lines", "norm = { boundaries = ['a', 'b'] }", "number 1 norm: boundaries must be an array"),
         ("lines", "outline = { width = 2 }", "unknown key 'outline'"),
         ("polygons", "dash = 'dashed'", "unknown key 'dash'"),
         ("polygons", "casing = { width = 2 }", "unknown key 'casing'"),
