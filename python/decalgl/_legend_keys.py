@@ -34,6 +34,11 @@ class _Entry:
     feature: int | None
 
 
+def plain(text: str) -> str:
+    """A text of the user's data, in which a dollar begins no formula."""
+    return text.replace("$", r"\$")
+
+
 def keys(layer: Layer) -> list[Any]:
     """An artist with a label for each entry of the layer's legend."""
     make = _patch if layer.kind == "polygons" else _line
@@ -47,11 +52,11 @@ def _entries(layer: Layer) -> list[_Entry]:
         return []
     colors = [_share(color) for color in coloring.label_colors]
     if coloring.kind == "single":
-        return [_Entry(layer.name, colors[0], first)]
+        return [_Entry(plain(layer.name), colors[0], first)]
     places, features = np.unique(coloring.label_of, return_index=True)
     feature_of = dict(zip(places.tolist(), features.tolist(), strict=True))
     return [
-        _Entry(label, color, feature_of.get(place))
+        _Entry(plain(label), color, feature_of.get(place))
         for place, (label, color) in enumerate(zip(coloring.labels, colors, strict=True))
     ]
 

@@ -188,6 +188,7 @@ class Frame:
         if explained:
             from .legend import overlay
 
+            self._check_memory("legends")
             picture = Image.alpha_composite(picture, Image.fromarray(overlay(explained, self.size)))
         elif legend:
             raise StyleError(

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._legend_keys import keys
+from ._legend_keys import keys, plain
 from .errors import StyleError, UnsupportedError, close_matches, warn
 
 if TYPE_CHECKING:
@@ -68,13 +68,16 @@ def draw_on(layer: Layer, ax: Any, legend_kwds: Mapping[str, Any]) -> Any:
 
 
 def require_drawable(layer: Layer) -> None:
-    """Warns where a legend is asked for that cannot be drawn. Raises StyleError for unknown legend_kwds."""
+    """Draws the legend once, so that StyleErrors come before a picture is made; warns where there is none."""
+    with _matplotlib():
+        from matplotlib.figure import Figure
     if layer.legend_coloring.kind == "listed":
         warn(
             f"Layer {layer.name!r}: colours that are given row by row have no names for a legend, so none will be"
             " drawn. Colour by column=, or leave legend=True out."
         )
-    _keywords(layer, {})
+    else:
+        draw_on(layer, Figure().add_subplot(), {})
 
 
 def overlay(layers: Sequence[Layer], size: tuple[int, int]) -> NDArray[np.uint8]:
@@ -110,7 +113,7 @@ def overlay(layers: Sequence[Layer], size: tuple[int, int]) -> NDArray[np.uint8]
             " make them smaller with legend_kwds={'fontsize': 'small', 'ncols': 2}."
         )
     canvas.draw()
-    return np.array(canvas.buffer_rgba())
+    return np.asarray(canvas.buffer_rgba())
 
 
 class _Column:
@@ -184,11 +187,11 @@ def _keywords(layer: Layer, given: Mapping[str, Any]) -> dict[str, Any]:
     if coloring.kind == "continuous":
         defaults: dict[str, Any] = {
             "extend": coloring.extend,
-            "label": coloring.title,
+            "label": plain(coloring.title),
             "alpha": coloring.alpha,
         }
     else:
-        defaults = {"title": coloring.title} if coloring.title else {}
+        defaults = {"title": plain(coloring.title)} if coloring.title else {}
     return {**defaults, **keywords}
 
 

@@ -122,7 +122,8 @@ class Pattern:
             PatternMark(begin * scale, min(end * scale, self.period * scale), begin_width, end_width)
             for begin, end, begin_width, end_width in self.marks
         )
-        return LinePattern(self.period * scale, marks, self.offset * scale)
+        period = self.period * scale
+        return LinePattern(period, marks, (self.offset * scale) % period)
 
 
 def _checked_marks(marks: Any, period: float) -> tuple[tuple[float, float, float, float], ...]:

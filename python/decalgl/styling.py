@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 CORNERS, CAPS = ("round", "miter", "bevel"), ("round", "butt", "square")
 MODES, ORDERS = ("normal", "inset", "offset"), ("layer", "feature")
 SLOPE_CORRECTIONS = ("thoeny", "tangent")
+BY_CATEGORY = ("width", "corner", "cap", "dash")
 MOST_BANDS, MOST_STYLES = 16, 1 << 16
 # A line this many times as wide as the terrain is long has a width in the wrong unit.
 WIDEST_LINE = 1e4
@@ -69,7 +70,7 @@ class LineKeywords:
         """Raises StyleError, ColumnError and InputError that name the layer, the keyword and the row."""
         rows = replace(rows, column=self.colors.column)
         with _named(f"Layer {rows.name!r}"):
-            coloring = _coloring(self.colors, rows, self.stroke)
+            coloring = _coloring(self.colors, rows, self.stroke, self.casing)
             widths = _widths(self.stroke.width, rows, "")
             stroke = _stroke(self.stroke, rows, "", coloring.colors, widths)
             casing = None if self.casing is None else self._casing(self.casing, rows, coloring, stroke)
@@ -81,7 +82,7 @@ class LineKeywords:
         sides = _widths(look.width, rows, "casing ")
         keywords = replace(self.stroke, dash=look.dash, bands=None, widest=None)
         with _named("casing"):
-            colors = _coloring(color_keywords(look), rows, None).colors
+            colors = _coloring(color_keywords(look), rows, look).colors
         casing = _stroke(
             keywords, rows, "casing ", _without(colors, coloring.left_out), stroke.widths + 2.0 * sides
         )
@@ -113,7 +114,7 @@ class PolygonKeywords:
         """Raises StyleError, ColumnError and InputError that name the layer, the keyword and the row."""
         rows = replace(rows, column=self.colors.column)
         with _named(f"Layer {rows.name!r}"):
-            coloring = _coloring(self.colors, rows, self.hatch)
+            coloring = _coloring(self.colors, rows, self.outline, hatch=self.hatch)
             fill = _fill(self.hatch, rows, coloring.colors)
             if self.outline is None:
                 return Looks(coloring, fill)
@@ -124,7 +125,7 @@ class PolygonKeywords:
             rows = replace(rows, column=outline.column)
         keywords = stroke_keywords(outline)
         with _named("outline"):
-            own = _coloring(color_keywords(outline), rows, keywords)
+            own = _coloring(color_keywords(outline), rows, outline)
         colors = _without(own.colors, coloring.left_out)
         stroke = _stroke(keywords, rows, "outline ", colors, _widths(outline.width, rows, "outline "))
         return Looks(
@@ -154,9 +155,14 @@ def _wrong_type(keyword: str, value: Any, example: str) -> StyleError:
     )
 
 
-def _coloring(keywords: ColorKeywords, rows: LayerRows, styled: Any) -> Coloring:
-    """The colours; a column that only chooses styles by category does not compete with a colour."""
-    values = vars(styled).values() if isinstance(styled, StrokeKeywords) else (styled,)
+def _coloring(
+    keywords: ColorKeywords,
+    rows: LayerRows,
+    *looks: StrokeKeywords | Casing | Outline | None,
+    hatch: Any = None,
+) -> Coloring:
+    """The colours; a column that only chooses among `looks` by category does not compete with a colour."""
+    values = [hatch, *(getattr(look, name, None) for look in looks for name in BY_CATEGORY)]
     if keywords.color is not None and any(isinstance(value, Mapping) for value in values):
         keywords = replace(keywords, column=None)
     return resolve_colors(rows.attributes.count, rows.attributes, rows=rows.rows, **vars(keywords))

@@ -376,38 +376,31 @@ def test_colors_by_row_have_no_legend(tmp_path: Path) -> None:
         ({"column": "kind"}, {"titel": "x"}, "'woods': legend_kwds has the unknown key 'titel'.*'title'"),
         ({"column": "height"}, {"lable": "x"}, "'woods': legend_kwds has the unknown key 'lable'.*'label'"),
         ({"column": "height"}, {"title": "x"}, "unknown key 'title'.*Figure.colorbar"),
-    ],
-)
-def test_unknown_keywords_are_refused_when_added(style: Any, keywords: Any, message: str) -> None:
-    scene = flat_scene()
-    data = parks(kind=["a", "b"], height=[1, 2])
-    with pytest.raises(dg.StyleError, match=message):
-        scene.add_polygons(data, name="woods", legend=True, legend_kwds=keywords, **style)
-    assert scene.layers == ()
-
-
-@pytest.mark.parametrize(
-    ("style", "keywords", "message"),
-    [
         ({"column": "kind"}, {"loc": "nowhere"}, "'woods': matplotlib refuses legend_kwds: 'nowhere'"),
         ({"column": "kind"}, {"labels": ["one"]}, "'woods': legend_kwds has 1 labels.*2 entries: a, b"),
         ({"column": "kind"}, {"ncols": "two"}, "'woods': matplotlib refuses legend_kwds"),
         ({"column": "height"}, {"orientation": "up"}, "'woods': matplotlib refuses legend_kwds"),
     ],
 )
-def test_unusable_keywords_are_refused_when_drawn(
-    style: Any, keywords: Any, message: str, tmp_path: Path, axes: Any
-) -> None:
-    scene = scene_of()
+def test_unusable_keywords_are_refused(style: Any, keywords: Any, message: str, axes: Any) -> None:
+    scene = flat_scene()
     data = parks(kind=["a", "b"], height=[1, 2])
-    layer = scene.add_polygons(data, name="woods", legend=True, legend_kwds=keywords, **style)
-    frame = render(scene)
     with pytest.raises(dg.StyleError, match=message):
-        frame.save(tmp_path / "map.png")
-    assert not (tmp_path / "map.png").exists()
+        scene.add_polygons(data, name="woods", legend=True, legend_kwds=keywords, **style)
+    assert scene.layers == ()
+    layer = scene.add_polygons(data, name="woods", **style)
     with pytest.raises(dg.StyleError, match=message):
-        layer.legend(axes)
-    frame.save(tmp_path / "map.png", legend=False)
+        layer.legend(axes, **keywords)
+
+
+def test_texts_of_the_data_are_no_formulas(tmp_path: Path) -> None:
+    scene = scene_of()
+    data = parks(**{"$x_$": ["$5 to $10", "^$_$", "50 %"], "y$_$": [1.0, 2.0, 3.0]})
+    layer = scene.add_polygons(data, column="$x_$", legend=True)
+    scene.add_polygons(data, column="y$_$", legend=True)
+    scene.add_polygons(data, color="red", name="z$_$", legend=True)
+    render(scene).save(tmp_path / "map.png")
+    assert layer.coloring.labels == ("$5 to $10", "50 %", "^$_$")
 
 
 def test_pictures_without_anything_to_explain(tmp_path: Path) -> None:

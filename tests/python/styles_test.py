@@ -164,6 +164,7 @@ def test_too_many_widths_of_dashes_name_the_cure() -> None:
         ((3, (4, 2)), LinePattern(6.0, (PatternMark(0.0, 4.0),), 3.0)),
         (dg.Pattern(9, [(1, 2), (3, 9, 1, 0)], 4),
          LinePattern(9.0, (PatternMark(1.0, 2.0), PatternMark(3.0, 9.0, 1.0, 0.0)), 4.0)),
+        (dg.Pattern.dashes(4, 2, offset=-1), LinePattern(6.0, (PatternMark(0.0, 4.0),), 5.0)),
         (dg.Pattern.arrows(10, 4), LinePattern(10.0, (PatternMark(6.0, 10.0, 1.0, 0.0),))),
         (dg.Pattern.arrows(10, 4, shaft=0.25),
          LinePattern(10.0, (PatternMark(0.0, 6.0, 0.25, 0.25), PatternMark(6.0, 10.0, 1.0, 0.0)))),
@@ -229,6 +230,9 @@ def test_widths_by_category_beside_a_color() -> None:
     layer = lines(data, column="kind", color="grey", width=widths)
     assert layer.widths.tolist() == [6.0, 3.0, 1.0, 6.0]
     assert layer.coloring.kind == "single"
+    cased = lines(data, column="kind", color="grey", casing=dg.Casing(width=widths))
+    assert cased.casing is not None
+    assert cased.casing.widths.tolist() == [16.0, 10.0, 6.0, 16.0]
     missing = frame(kind=["road", None, "path", "road"])
     with pytest.raises(dg.StyleError, match="'roads', row 1: width nan"):
         lines(missing, column="kind", width=widths)
