@@ -6,12 +6,13 @@ one for all         one a row                           a column            by t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
+from ._values import is_listed
 from .coloring import category_codes, column_values
 from .errors import StyleError, close_matches
 
@@ -63,8 +64,7 @@ def choose(
         return _by_category(rows, keyword, given, parse)
     if isinstance(given, str) and not is_one(given) and given in rows.attributes.names:
         return _by_row(rows, keyword, rows.attributes.raw(given), parse)
-    listed = isinstance(given, (Sequence, np.ndarray)) or hasattr(given, "to_numpy")
-    if isinstance(given, str) or not listed or (not hasattr(given, "to_numpy") and is_one(given)):
+    if not is_listed(given) or (not hasattr(given, "to_numpy") and is_one(given)):
         return Choices((_parsed(rows, "", keyword, given, parse),))
     return _by_row(rows, keyword, given, parse)
 
@@ -132,7 +132,7 @@ def numbers_of(given: Any, rows: LayerRows, keyword: str) -> NDArray[np.float64]
     try:
         numbers = [float(given.get(category, np.nan)) for category in categories]
         numbers.append(float(given.get(None, np.nan)))
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise StyleError(f"{keyword}= must give each category a number: {error}.") from error
     return np.array(numbers)[codes]
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._colors import colormap
-from ._numbers import is_number
+from ._values import is_number
 from .patterns import Pattern
 from .strokes import Hatch
 from .styles import Casing, Outline

@@ -79,7 +79,7 @@ class Attributes:
                 numbers = found.to_numpy(dtype=np.float64, na_value=np.nan)
             else:
                 numbers = np.asarray(found, dtype=np.float64)
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise InputError(
                 f"{what}={value!r} of layer {self.layer_name!r} must be numbers: {error}. Convert the column"
                 " first."

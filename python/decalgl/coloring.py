@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ._colors import Rgba, alpha_values, colormap, parse_color, parse_colors
+from ._values import flag, is_listed
 from .errors import StyleError, close_matches, warn
 
 if TYPE_CHECKING:
@@ -153,7 +154,7 @@ def resolve_colors(
     return Coloring(
         colors=_bytes(rgba if rows is None else rgba[rows]),
         kind=painted.kind,
-        legend=bool(legend),
+        legend=flag(legend, "legend"),
         legend_kwds=_checked_legend_kwds(legend_kwds),
         title=title,
         labels=labels,
@@ -194,6 +195,8 @@ def _painted_by_column(
     missing_kwds: Mapping[str, Any] | None,
 ) -> _Painted:
     values, what = column_values(count, attributes, column)
+    if categorical is not None:
+        categorical = flag(categorical, "categorical")
     numbers = None if categorical or isinstance(cmap, Mapping) else _as_numbers(values)
     if numbers is None:
         if categorical is False:
@@ -215,6 +218,8 @@ def column_values(count: int, attributes: Attributes | None, column: Any) -> tup
             )
         return attributes.raw(column), f"Column {column!r} of layer {attributes.layer_name!r}"
     values = column
+    if not is_listed(column):
+        raise StyleError(f"column= must be a column's name or one value for each row, but it is {column!r}.")
     if not hasattr(values, "dtype"):
         given = list(column)
         values = np.empty(len(given), dtype=object)
@@ -249,7 +254,12 @@ def category_codes(values: Any) -> tuple[NDArray[np.int64], list[Any]]:
     """Category numbers, -1 where missing, and the categories: in pandas' order, sorted, or as they come."""
     own = getattr(values, "cat", None)
     plain: list[Any] = np.asarray(values, dtype=object).tolist()
-    present = list(dict.fromkeys(value for value in plain if not _is_missing(value)))
+    try:
+        present = list(dict.fromkeys(value for value in plain if not _is_missing(value)))
+    except (TypeError, ValueError) as error:
+        raise StyleError(
+            f"column= holds values that are no categories: {error}. Give texts or numbers."
+        ) from error
     if own is not None:
         categories = list(own.categories)
     else:
@@ -400,7 +410,7 @@ def _extend(norm: Any, values: NDArray[np.float64]) -> Extend:
 def _limit(value: Any, name: str) -> float:
     try:
         number = float(value)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise StyleError(f"{name} must be a number, but it is {value!r}.") from error
     if not math.isfinite(number):
         raise StyleError(f"{name} must be finite, but it is {number}.")
@@ -410,6 +420,10 @@ def _limit(value: Any, name: str) -> float:
 def _missing_look(missing_kwds: Mapping[str, Any] | None) -> dict[str, Any]:
     if missing_kwds is None:
         return {}
+    if not isinstance(missing_kwds, Mapping):
+        raise StyleError(
+            f"missing_kwds must be a dict such as {{'color': 'grey'}}, but it is {missing_kwds!r}."
+        )
     unknown: Sequence[str] = [key for key in missing_kwds if key not in MISSING_KEYS]
     if unknown:
         raise StyleError(

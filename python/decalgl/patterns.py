@@ -9,15 +9,17 @@ Dashes by name are matplotlib's, whose lengths are multiples of the line's width
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ._numbers import finite_number, is_number
+from ._values import finite_number, is_listed, is_number, is_word
 from .errors import StyleError, close_matches
 from .strokes import LinePattern, PatternMark
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 MOST_MARKS = 16
 # Lengths on and off in line widths: rcParams lines.dashed_pattern and its siblings as matplotlib ships them.
@@ -53,7 +55,7 @@ class Pattern:
         period = finite_number(self.period, "Pattern period")
         if period <= 0.0:
             raise StyleError(f"Pattern period must be a length above 0, but it is {period:g}.")
-        if self.units not in ("m", "width"):
+        if not is_word(self.units, ("m", "width")):
             raise StyleError(f"Pattern units must be 'm' or 'width', but they are {self.units!r}.")
         object.__setattr__(self, "period", period)
         object.__setattr__(self, "offset", finite_number(self.offset, "Pattern offset"))
@@ -127,7 +129,7 @@ class Pattern:
 
 
 def _checked_marks(marks: Any, period: float) -> tuple[tuple[float, float, float, float], ...]:
-    if isinstance(marks, str) or not isinstance(marks, (Sequence, np.ndarray)):
+    if not is_listed(marks):
         raise StyleError(f"Pattern marks must be a list of tuples (begin, end), but they are {marks!r}.")
     if not 1 <= len(marks) <= MOST_MARKS:
         raise StyleError(f"A Pattern has from 1 to {MOST_MARKS} marks, but {len(marks)} are given.")
@@ -136,7 +138,7 @@ def _checked_marks(marks: Any, period: float) -> tuple[tuple[float, float, float
 
 def _checked_mark(mark: Any, number: int, period: float) -> tuple[float, float, float, float]:
     what = f"Pattern mark {number}"
-    if isinstance(mark, str) or not isinstance(mark, (Sequence, np.ndarray)) or len(mark) not in (2, 4):
+    if not is_listed(mark) or len(mark) not in (2, 4):
         raise StyleError(
             f"{what} must be (begin, end) or (begin, end, begin_width, end_width), but it is {mark!r}."
         )
@@ -177,7 +179,8 @@ def is_dash_lengths(value: Any) -> bool:
 
 
 def _is_lengths(value: Any) -> bool:
-    return isinstance(value, (tuple, list, np.ndarray)) and len(value) > 0 and all(map(is_number, value))
+    listed = isinstance(value, (tuple, list, np.ndarray)) and is_listed(value)
+    return listed and len(value) > 0 and all(map(is_number, value))
 
 
 def _named(name: str) -> Pattern | None:

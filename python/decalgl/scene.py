@@ -9,6 +9,7 @@ import numpy as np
 
 from ._choices import LayerRows
 from ._colors import colormap, parse_color
+from ._values import is_word
 from .camera import Camera
 from .errors import InputError, StyleError, UnsupportedError, close_matches
 from .features import LARGEST_COORDINATE, FeatureTable, Kind, read_features
@@ -342,9 +343,9 @@ def _checked_exaggeration(terrain: Terrain, exaggeration: Any) -> float:
 
 
 def _require_technique(layer_name: str, technique: str) -> None:
-    if technique in ("auto", "static"):
+    if is_word(technique, ("auto", "static")):
         return
-    if technique in PLANNED_TECHNIQUES:
+    if is_word(technique, PLANNED_TECHNIQUES):
         raise UnsupportedError(
             f"Layer {layer_name!r}: technique={technique!r} is not drawn by this version. Use 'auto' or"
             " 'static'."

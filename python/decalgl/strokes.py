@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from ._numbers import finite_number
+from ._values import finite_number, flag
 from .errors import StyleError
 
 if TYPE_CHECKING:
@@ -109,8 +109,7 @@ class Hatch:
                 raise StyleError(f"Hatch {name} must be a length above 0 in metres, but it is {length:g}.")
             object.__setattr__(self, name, length)
         object.__setattr__(self, "angle", finite_number(self.angle, "Hatch angle"))
-        if not isinstance(self.crossed, bool):
-            raise StyleError(f"Hatch crossed must be True or False, but it is {self.crossed!r}.")
+        object.__setattr__(self, "crossed", flag(self.crossed, "Hatch crossed"))
 
 
 @dataclass(frozen=True, eq=False)

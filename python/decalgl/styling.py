@@ -15,7 +15,7 @@ import numpy as np
 
 from ._choices import Choices, LayerRows, choose, numbers_of
 from ._colors import parse_color
-from ._numbers import finite_number
+from ._values import finite_number, is_listed, is_word
 from .coloring import Coloring, resolve_colors
 from .errors import StyleError, UnsupportedError, close_matches
 from .patterns import NAMED_DASHES, Pattern, is_dash_lengths, parse_dash
@@ -193,12 +193,12 @@ def _widths(width: Any, rows: LayerRows, what: str) -> NDArray[np.float64]:
 
 def _shared_style(keywords: StrokeKeywords, what: str) -> StrokeStyle:
     """What all features of a stroke have in common. Raises StyleError and UnsupportedError."""
-    if keywords.width_units == "px":
+    if is_word(keywords.width_units, ("px",)):
         raise UnsupportedError(
             f"{what}widths in pixels (width_units='px', the default) are not drawn by this version. Give the"
             " width on the ground in metres, such as width=5, width_units='m'."
         )
-    if keywords.width_units != "m":
+    if not is_word(keywords.width_units, ("m",)):
         raise StyleError(f"{what}width_units must be 'm' or 'px', but it is {keywords.width_units!r}.")
     limit = finite_number(keywords.miter_limit, f"{what}miter_limit")
     if not 0.0 <= limit <= 180.0:
@@ -216,7 +216,7 @@ def _shared_style(keywords: StrokeKeywords, what: str) -> StrokeStyle:
 
 
 def _require_word(keyword: str, value: Any, known: tuple[str, ...], more: str = "") -> None:
-    if value not in known:
+    if not is_word(value, known):
         raise StyleError(
             f"{keyword}={value!r} is not known.{close_matches(value, known)} Give one of"
             f" {', '.join(known)}{more and ' ' + more}."
@@ -227,13 +227,13 @@ def _bands(bands: Any, what: str) -> tuple[ColorBand, ...]:
     if bands is None:
         return ()
     shape = f"{what}bands must be a list of (reach, colour), such as [(0.6, 'white'), (1.0, 'black')]"
-    if isinstance(bands, (str, Mapping)) or not hasattr(bands, "__len__"):
+    if not is_listed(bands):
         raise StyleError(f"{shape}, but they are {bands!r}.")
     if not 1 <= len(bands) <= MOST_BANDS:
         raise StyleError(f"{what}bands must be 1 to {MOST_BANDS} colours, but {len(bands)} are given.")
     found: list[ColorBand] = []
     for number, band in enumerate(bands, start=1):
-        if isinstance(band, str) or not hasattr(band, "__len__") or len(band) != 2:
+        if not is_listed(band) or len(band) != 2:
             raise StyleError(f"{shape}, but band {number} is {band!r}.")
         reach = finite_number(band[0], f"{what}bands: the reach of band {number}")
         if not (found[-1].reach if found else 0.0) < reach <= 1.0:
@@ -275,8 +275,10 @@ def _styles(
 ) -> tuple[tuple[StrokeStyle, ...], NDArray[np.uint32] | None]:
     """The distinct styles, and each feature's place among them."""
     shared = _shared_style(keywords, what)
-    corners = choose(rows, f"{what}corner", keywords.corner, _word(CORNERS), _is_word(CORNERS))
-    caps = choose(rows, f"{what}cap", keywords.cap, _word(CAPS), _is_word(CAPS))
+    corners = choose(
+        rows, f"{what}corner", keywords.corner, _word(CORNERS), lambda value: is_word(value, CORNERS)
+    )
+    caps = choose(rows, f"{what}cap", keywords.cap, _word(CAPS), lambda value: is_word(value, CAPS))
     dashes = choose(rows, f"{what}dash", keywords.dash, parse_dash, _is_one_dash)
     if len(widths) == 0:
         return (shared,), None
@@ -317,10 +319,9 @@ def _widths_of_dashes(
 
 def _word(known: tuple[str, ...]) -> Callable[[Any], Any]:
     """A parser of one of a few words; the first is what rows without one have."""
-    is_known = _is_word(known)
 
     def parse(value: Any) -> Any:
-        if value is not None and not is_known(value):
+        if value is not None and not is_word(value, known):
             hint = close_matches(value, known)
             raise StyleError(
                 f"{value!r} is not known.{hint} Give one of {', '.join(known)}, or a column's name."
@@ -328,10 +329,6 @@ def _word(known: tuple[str, ...]) -> Callable[[Any], Any]:
         return known[0] if value is None else value
 
     return parse
-
-
-def _is_word(known: tuple[str, ...]) -> Callable[[Any], bool]:
-    return lambda value: isinstance(value, str) and value in known
 
 
 def _is_one_dash(value: Any) -> bool:

@@ -500,3 +500,52 @@ def test_lists_of_plain_points_say_what_to_give(data: Any) -> None:
         with pytest.raises(dg.InputError, match=r"'parks' cannot be made from .*\(coords, offsets\)"):
             add(data, name="parks", **options)
     assert_usable(scene)
+
+
+JUNK: list[Any] = [
+    None, True, 0, -1, 1.5, NAN, INF, 10**400, 1e-320, "", "red", "dashed", "round", b"x", (), [], {}, (1,), (1, 2),
+    [None, None], ["red", "blue"], ["round", "butt"], (1, (2, 3)), ((1, 2), (3, 4)), [[1, 2], [3]], [{}, {}],
+    np.array(3.0), np.array([1, 2]), np.array(["a", "b"]), np.zeros((2, 2)), np.zeros(0), np.datetime64("2020-01-01"),
+    np.ma.array([1, 2], mask=[0, 1]), np.array([None, {}], dtype=object), pd.Series([1, 2]), pd.Series([None, pd.NA]),
+    pd.Series(["a", None], dtype="category"), pd.DataFrame({"a": [1, 2]}), pd.Index(["round", "miter"]),
+    pd.date_range("2020", periods=2), {"a": 1}, {"a": "round", "b": "miter"}, {1: 2}, {None: 1}, object(), len, 1j,
+    range(2), iter([1, 2]), [("a", 1)], [(0.5, "red"), (1, "blue")], dg.Hatch(1, 1), dg.Pattern(1, [(0, 1)]),
+    dg.Casing(width=1), dg.Outline(width=1, width_units="m"),
+]  # fmt: skip
+COLORS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
+SHAPES = ("width", "width_units", "corner", "miter_limit", "dash", "bands", "slope_correction", "widest")
+LAYER = ("legend", "legend_kwds", "order", "name", "technique")
+
+
+@settings(max_examples=400, deadline=None)
+@given(
+    st.sampled_from(
+        [(dg.Scene.add_lines, name) for name in (*COLORS, *SHAPES, *LAYER, "cap", "casing")]
+        + [(dg.Scene.add_polygons, name) for name in (*COLORS, *LAYER, "hatch", "outline")]
+        + [(dg.Outline, name) for name in (*COLORS, *SHAPES, "mode", "order")]
+        + [(dg.Casing, name) for name in (*COLORS, "width", "dash")]
+    ),
+    st.sampled_from(JUNK),
+    st.sampled_from([{}, {"column": ["a", "b"]}, {"column": [1.0, NAN], "legend": True}]),
+)
+@pytest.mark.filterwarnings("ignore::decalgl.DecalWarning")
+def test_whatever_is_given_is_a_layer_or_a_decal_error(
+    where: Any, value: Any, others: dict[str, Any]
+) -> None:
+    target, keyword = where
+    scene = flat_scene()
+    metres = {"width": 1, "width_units": "m"}
+    squares, ways = [box(0, 0, 9, 9), box(5, 5, 8, 8)], [DIAGONAL, DIAGONAL]
+    try:
+        if target is dg.Outline:
+            scene.add_polygons(squares, outline=dg.Outline(**{**metres, keyword: value}), **others)
+        elif target is dg.Casing:
+            scene.add_lines(ways, casing=dg.Casing(**{"width": 1, keyword: value}), **metres, **others)
+        elif target is dg.Scene.add_polygons:
+            scene.add_polygons(squares, **{**others, keyword: value})
+        else:
+            scene.add_lines(ways, **{**metres, **others, keyword: value})
+    except dg.DecalError:
+        assert scene.layers == ()
+    else:
+        assert len(scene.layers) == 1
