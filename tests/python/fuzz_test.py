@@ -143,17 +143,39 @@ def test_layers(renderer: _core.Renderer, data: Any) -> None:
 lengths = odd_floats | st.floats(0.01, 50.0)
 
 
-def odd_hatches() -> Any:
-    return st.builds(_core.Hatch, spacing=lengths, width=lengths, angle=odd_floats, crossed=st.booleans())
+def odd_hatches(plain: bool) -> Any:
+    sizes, angles = (st.floats(0.01, 50.0), st.floats(-360, 360)) if plain else (lengths, odd_floats)
+    return st.builds(_core.Hatch, spacing=sizes, width=sizes, angle=angles, crossed=st.booleans())
 
 
 @st.composite
-def odd_styles(draw: Any) -> _core.StrokeStyle:
-    """Styles of which most are refused, and some fit."""
+def plain_styles(draw: Any) -> _core.StrokeStyle:
+    """Styles that fit."""
+    style = any_words(draw)
+    style.miter_limit = draw(st.floats(0, 180))
+    if draw(st.booleans()):
+        period = draw(st.floats(0.5, 50.0))
+        begin, end = draw(st.floats(0.0, 0.4)), draw(st.floats(0.5, 1.0))
+        shares = draw(st.lists(st.floats(0, 1), min_size=2, max_size=2))
+        mark = _core.PatternMark(begin * period, end * period, *shares)
+        style.pattern = _core.LinePattern(period, draw(st.floats(-99, 99)), [mark] * draw(st.integers(1, 3)))
+    reaches = draw(st.sampled_from([[], [1.0], [0.3, 1.0], [0.1, 0.5, 1.0]]))
+    style.bands = [_core.ColorBand(reach, [200, 10, 10, 90]) for reach in reaches]
+    return style
+
+
+def any_words(draw: Any) -> _core.StrokeStyle:
     style = _core.StrokeStyle()
     style.corner = draw(st.sampled_from(list(_core.Corner.__members__.values())))
     style.cap = draw(st.sampled_from(list(_core.Cap.__members__.values())))
     style.slope_correction = draw(st.sampled_from(list(_core.SlopeCorrection.__members__.values())))
+    return style
+
+
+@st.composite
+def odd_styles(draw: Any) -> _core.StrokeStyle:
+    """Styles of which most are refused."""
+    style = any_words(draw)
     style.miter_limit = draw(st.floats(0, 180) | odd_floats)
     if draw(st.booleans()):
         period = draw(lengths)
@@ -168,18 +190,21 @@ def odd_styles(draw: Any) -> _core.StrokeStyle:
 
 @st.composite
 def fitting_layers(draw: Any) -> dict[str, Any]:
-    """Layers whose offsets fit, with odd coordinates and widths."""
+    """Layers whose offsets fit: half of them ordinary, the others with odd coordinates, widths and styles."""
+    ordinary = draw(st.booleans())
+    places, breadths = (st.floats(-200, 200), st.floats(0, 60)) if ordinary else (odd_floats, odd_floats)
+    styles = st.lists(plain_styles() if ordinary else odd_styles(), max_size=1 if ordinary else 2)
     sizes = draw(st.lists(st.integers(0, 6), min_size=1, max_size=4))
     count = len(sizes)
-    point = st.tuples(odd_floats, odd_floats)
+    point = st.tuples(places, places)
     coordinates = draw(st.lists(point, min_size=sum(sizes), max_size=sum(sizes)))
     polygons = draw(st.booleans())
     rgba = np.array([200, 10, 10, draw(st.sampled_from([0, 90, 255]))] * count, dtype=np.uint8)
     looks = dict(PLAIN)
     if polygons:
-        looks["fill"] = core_fill(rgba, *draw(st.lists(odd_hatches(), max_size=2)))
+        looks["fill"] = core_fill(rgba, *draw(st.lists(odd_hatches(plain=ordinary), max_size=2)))
     if not polygons or draw(st.booleans()):
-        widths = np.array(draw(st.lists(odd_floats, min_size=count, max_size=count)))
+        widths = np.array(draw(st.lists(breadths, min_size=count, max_size=count)))
         looks["outline_mode"] = _core.OutlineMode.__members__[
             draw(st.sampled_from(["normal", "inset", "offset"]))
         ]
@@ -188,8 +213,8 @@ def fitting_layers(draw: Any) -> dict[str, Any]:
             looks[role] = core_stroke(
                 rgba,
                 widths,
-                *draw(st.lists(odd_styles(), max_size=2)),
-                widest=draw(st.just(0.0) | odd_floats),
+                *draw(styles),
+                widest=draw(st.just(0.0) | breadths),
             )
     return {
         **looks,
