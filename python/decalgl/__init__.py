@@ -29,15 +29,20 @@ from .errors import (
 from .features import FeatureTable
 from .frame import Frame, Picked, PreparedLayer, Stats
 from .indexes import BvhIndex
+from .layer import Layer
+from .patterns import Pattern
 from .renderer import Renderer
-from .scene import Layer, Relief, Scene
+from .scene import Relief, Scene
 from .scene_file import load_scene
+from .strokes import Hatch
+from .styles import Casing, Outline
 from .terrain import Terrain
 
 __all__ = [
     "BvhIndex",
     "Camera",
     "CancelledError",
+    "Casing",
     "Coloring",
     "ColumnError",
     "CrsError",
@@ -48,9 +53,12 @@ __all__ = [
     "FileError",
     "Frame",
     "GraphicsError",
+    "Hatch",
     "InputError",
     "Layer",
     "MemoryLimitError",
+    "Outline",
+    "Pattern",
     "Picked",
     "PreparedLayer",
     "Relief",

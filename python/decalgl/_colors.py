@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
+from ._values import is_listed
 from .errors import StyleError, close_matches
 
 if TYPE_CHECKING:
@@ -33,12 +34,8 @@ def parse_color(value: Any, strict: bool = True) -> Rgba | None:
     numbers = _as_channels(value)
     if numbers is not None:
         return numbers
-    if (
-        isinstance(value, (Sequence, np.ndarray))
-        and len(value) == 2
-        and isinstance(value[0], str)
-        and _is_real(value[1])
-    ):
+    pair = isinstance(value, (Sequence, np.ndarray)) and is_listed(value) and len(value) == 2
+    if pair and isinstance(value[0], str) and _is_real(value[1]):
         red, green, blue, _ = _from_text(value[0])
         alpha = alpha_values(value[1], 0)
         return red, green, blue, float(alpha if alpha is not None else 1.0)
@@ -52,7 +49,7 @@ def _is_real(value: Any) -> bool:
 
 
 def _as_channels(value: Any) -> Rgba | None:
-    if not isinstance(value, (tuple, list, np.ndarray)) or len(value) not in (3, 4):
+    if not isinstance(value, (tuple, list, np.ndarray)) or not is_listed(value) or len(value) not in (3, 4):
         return None
     if not all(_is_real(channel) for channel in value):
         return None
@@ -144,7 +141,7 @@ def alpha_values(alpha: Any, count: int) -> NDArray[np.float64] | None:
         return None
     try:
         values = np.asarray(alpha, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise StyleError(f"alpha={alpha!r} must be a number from 0 to 1, or one a row.") from error
     if values.ndim and values.shape != (count,):
         raise StyleError(

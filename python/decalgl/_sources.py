@@ -79,7 +79,7 @@ class Attributes:
                 numbers = found.to_numpy(dtype=np.float64, na_value=np.nan)
             else:
                 numbers = np.asarray(found, dtype=np.float64)
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise InputError(
                 f"{what}={value!r} of layer {self.layer_name!r} must be numbers: {error}. Convert the column"
                 " first."
@@ -164,12 +164,12 @@ def _from_sequence(data: Any, layer_name: str) -> Source:
         raise _unknown(data, layer_name, f"an array of {data.dtype} alone")
     import shapely
 
-    values = np.empty(len(data), dtype=object)
-    values[:] = list(data)
+    # One by one, as NumPy would take lists and arrays apart.
+    values: NDArray[Any] = np.fromiter(data, dtype=object, count=len(data))
     usable = shapely.is_valid_input(values)
-    if not usable.all():
-        values[~usable] = [None if _is_missing(value) else value for value in values[~usable]]
-        usable = shapely.is_valid_input(values)
+    for row in np.flatnonzero(~usable).tolist():
+        if _is_missing(values[row]):
+            values[row], usable[row] = None, True
     if usable.all():
         return _from_shapely(values, crs, layer_name)
     for row in np.flatnonzero(~usable).tolist():

@@ -22,7 +22,7 @@ class StrictTable:
         self.name = name
         self.file = file
         if not isinstance(values, Mapping):
-            raise InputError(f"{file}: {name} must be a table, but it is {values!r}.")
+            raise InputError(f"{file}, {name}: must be a table, but it is {values!r}.")
         self._values = dict(values)
         self._known: list[str] = []
 
@@ -94,6 +94,10 @@ class StrictTable:
         """A table inside this one."""
         value = self.value(key)
         return None if value is None else StrictTable(value, name or f"[{key}]", self.file)
+
+    def inner(self, values: Any, name: str) -> StrictTable:
+        """A table that lies deeper in this file."""
+        return StrictTable(values, name, self.file)
 
     def names(self) -> list[str]:
         """All keys there are."""

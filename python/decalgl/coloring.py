@@ -6,6 +6,7 @@ color       one colour, or one a row            column + cmap     numbers throug
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ._colors import Rgba, alpha_values, colormap, parse_color, parse_colors
+from ._values import flag, is_listed
 from .errors import StyleError, close_matches, warn
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ DEFAULT_COLOR = "#1f77b4"
 DEFAULT_MISSING = "lightgrey"
 MISSING_KEYS = ("color", "alpha", "label")
 LegendKind = Literal["single", "listed", "categorical", "continuous"]
+Extend = Literal["neither", "min", "max", "both"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,38 +36,53 @@ class Coloring:
 
     colors: uint8 (rows, 4), sRGB with straight alpha; alpha 0 is not drawn.
     kind: "single" (one colour), "listed" (one a row, given), "categorical" or "continuous".
-    legend: whether a legend was asked for.
+    legend: whether a legend was asked for. legend_kwds: how it is to look, in matplotlib's words.
     title: the column's name, or an empty string.
     labels, label_colors: the categories and their colours, uint8 (labels, 4); the missing values come last.
+    label_of: int64 (rows), each row's place among the labels, -1 for none.
     cmap, norm: the matplotlib colormap and normalisation of a continuous or categorical colouring, or None.
     vmin, vmax: the values at the ends of a continuous colormap.
+    extend: which ends of a continuous colormap values lie beyond: "neither", "min", "max" or "both".
+    alpha: the one opacity that was given for all rows, or None.
     missing: how many rows have no value.
+    left_out: bool (rows), those that are not drawn for lack of a colour: neither are their outlines and casings.
     """
 
     colors: NDArray[np.uint8] = field(repr=False)
     kind: LegendKind
     legend: bool = False
+    legend_kwds: Mapping[str, Any] = field(default_factory=dict, repr=False)
     title: str = ""
     labels: tuple[str, ...] = ()
     label_colors: NDArray[np.uint8] = field(default_factory=lambda: np.zeros((0, 4), np.uint8), repr=False)
+    label_of: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64), repr=False)
     cmap: Any = None
     norm: Any = None
     vmin: float | None = None
     vmax: float | None = None
+    extend: Extend = "neither"
+    alpha: float | None = None
     missing: int = 0
+    left_out: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_), repr=False)
 
 
 @dataclass(frozen=True)
 class _Painted:
-    """Colours before missing values and alpha are applied: float64 (rows, 4), and which rows are missing."""
+    """Colours before missing values and alpha are applied: float64 (rows, 4), and which rows are missing.
+
+    hidden: rows whose value the normalisation gives no colour.
+    """
 
     rgba: NDArray[np.float64]
     missing: NDArray[np.bool_]
     kind: LegendKind
     labels: tuple[str, ...] = ()
     label_rgba: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 4)))
+    label_of: NDArray[np.int64] | None = None
     cmap: Any = None
     norm: Any = None
+    extend: Extend = "neither"
+    hidden: NDArray[np.bool_] | None = None
 
 
 def resolve_colors(
@@ -79,6 +97,7 @@ def resolve_colors(
     alpha: Any = None,
     categorical: bool | None = None,
     legend: bool = False,
+    legend_kwds: Mapping[str, Any] | None = None,
     missing_kwds: Mapping[str, Any] | None = None,
     norm: Any = None,
     rows: NDArray[np.int64] | None = None,
@@ -94,7 +113,10 @@ def resolve_colors(
     categorical: colour numbers by category too; by default only what is no number.
     missing_kwds: {"color": ..., "alpha": ..., "label": ...} for rows without a value, which are otherwise
         not drawn.
-    norm: a matplotlib normalisation, instead of a linear one.
+    norm: a matplotlib normalisation, instead of a linear one, such as LogNorm(), TwoSlopeNorm(0) or
+        BoundaryNorm([0, 10, 100], 256). Limits that it lacks are vmin and vmax, or else the least and the
+        greatest value it can show; it is copied. Values that it cannot show are not drawn.
+    legend, legend_kwds: kept for `Layer.legend`.
     rows: give the colours of these rows only (FeatureTable.rows), in this order; the legend still covers all.
 
     Raises ColumnError (no such column) and StyleError (unknown colour or colormap, wrong lengths or ranges).
@@ -111,6 +133,7 @@ def resolve_colors(
         )
     missing_look = _missing_look(missing_kwds)
     rgba, label_rgba, labels = painted.rgba, painted.label_rgba, painted.labels
+    label_of = np.full(count, -1) if painted.label_of is None else painted.label_of
     opacity = alpha_values(alpha, count)
     if opacity is not None:
         # A fully transparent colour was asked for by name ("none"), and stays so.
@@ -118,24 +141,33 @@ def resolve_colors(
         rgba[drawn, 3] = np.broadcast_to(opacity, count)[drawn]
         if opacity.ndim == 0:
             label_rgba[:, 3] = opacity
+    one = None if opacity is None or opacity.ndim else float(opacity)
+    left_out = np.zeros(count, dtype=np.bool_) if painted.hidden is None else painted.hidden
     if painted.missing.any():
-        one = None if opacity is None or opacity.ndim else float(opacity)
         look = _missing_rgba(missing_look, one)
         rgba[painted.missing] = look if look is not None else 0.0
-        if look is not None:
+        if look is None:
+            left_out = left_out | painted.missing
+        else:
             labels, label_rgba = (*labels, str(missing_look["label"])), np.vstack([label_rgba, look])
+            label_of[painted.missing] = len(labels) - 1
     return Coloring(
-        _bytes(rgba if rows is None else rgba[rows]),
-        painted.kind,
-        bool(legend),
-        title,
-        labels,
-        _bytes(label_rgba),
-        painted.cmap,
-        painted.norm,
-        None if painted.norm is None else painted.norm.vmin,
-        None if painted.norm is None else painted.norm.vmax,
-        int(painted.missing.sum()),
+        colors=_bytes(rgba if rows is None else rgba[rows]),
+        kind=painted.kind,
+        legend=flag(legend, "legend"),
+        legend_kwds=_checked_legend_kwds(legend_kwds),
+        title=title,
+        labels=labels,
+        label_colors=_bytes(label_rgba),
+        label_of=label_of if rows is None else label_of[rows],
+        cmap=painted.cmap,
+        norm=painted.norm,
+        vmin=None if painted.norm is None else painted.norm.vmin,
+        vmax=None if painted.norm is None else painted.norm.vmax,
+        extend=painted.extend,
+        alpha=one,
+        missing=int(painted.missing.sum()),
+        left_out=left_out if rows is None else left_out[rows],
     )
 
 
@@ -162,19 +194,22 @@ def _painted_by_column(
     norm: Any,
     missing_kwds: Mapping[str, Any] | None,
 ) -> _Painted:
-    values, what = _column_values(count, attributes, column)
+    values, what = column_values(count, attributes, column)
+    if categorical is not None:
+        categorical = flag(categorical, "categorical")
     numbers = None if categorical or isinstance(cmap, Mapping) else _as_numbers(values)
     if numbers is None:
         if categorical is False:
             raise StyleError(
                 f"{what} holds texts or categories, so it cannot be coloured with categorical=False."
             )
-        codes, categories = _codes(values)
+        codes, categories = category_codes(values)
         return _painted_by_category(codes, categories, cmap, what, missing_kwds is not None)
     return _painted_by_number(numbers, cmap, vmin, vmax, norm, what)
 
 
-def _column_values(count: int, attributes: Attributes | None, column: Any) -> tuple[Any, str]:
+def column_values(count: int, attributes: Attributes | None, column: Any) -> tuple[Any, str]:
+    """The values of column=, its name's or itself, one a row; and what to call it. Raises as `resolve_colors`."""
     named = isinstance(column, str) or np.isscalar(column)
     if named:
         if attributes is None:
@@ -183,6 +218,8 @@ def _column_values(count: int, attributes: Attributes | None, column: Any) -> tu
             )
         return attributes.raw(column), f"Column {column!r} of layer {attributes.layer_name!r}"
     values = column
+    if not is_listed(column):
+        raise StyleError(f"column= must be a column's name or one value for each row, but it is {column!r}.")
     if not hasattr(values, "dtype"):
         given = list(column)
         values = np.empty(len(given), dtype=object)
@@ -213,11 +250,16 @@ def _as_numbers(values: Any) -> NDArray[np.float64] | None:
     return None
 
 
-def _codes(values: Any) -> tuple[NDArray[np.int64], list[Any]]:
+def category_codes(values: Any) -> tuple[NDArray[np.int64], list[Any]]:
     """Category numbers, -1 where missing, and the categories: in pandas' order, sorted, or as they come."""
     own = getattr(values, "cat", None)
     plain: list[Any] = np.asarray(values, dtype=object).tolist()
-    present = list(dict.fromkeys(value for value in plain if not _is_missing(value)))
+    try:
+        present = list(dict.fromkeys(value for value in plain if not _is_missing(value)))
+    except (TypeError, ValueError) as error:
+        raise StyleError(
+            f"column= holds values that are no categories: {error}. Give texts or numbers."
+        ) from error
     if own is not None:
         categories = list(own.categories)
     else:
@@ -252,10 +294,11 @@ def _painted_by_category(
         kept = ~unnamed
         labels = tuple(str(category) for category, keep in zip(categories, kept, strict=True) if keep)
         rgba = np.append(looks, [[0.0] * 4], axis=0)[codes]
-        return _Painted(rgba, missing, "categorical", labels, looks[kept])
+        places = np.append(np.where(kept, np.cumsum(kept) - 1, -1), -1)[codes]
+        return _Painted(rgba, missing, "categorical", labels, looks[kept], places)
     looks, chosen = _category_looks(len(categories), cmap)
     rgba = np.append(looks, [[0.0] * 4], axis=0)[codes]
-    return _Painted(rgba, missing, "categorical", tuple(map(str, categories)), looks, chosen)
+    return _Painted(rgba, missing, "categorical", tuple(map(str, categories)), looks, codes, chosen)
 
 
 def _category_looks(count: int, cmap: Any) -> tuple[NDArray[np.float64], Any]:
@@ -300,30 +343,74 @@ def _painted_by_number(
     chosen = colormap("viridis" if cmap is None else cmap)
     missing = np.isnan(numbers)
     finite = numbers[np.isfinite(numbers)]
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    low, high = _limit(vmin, low, "vmin"), _limit(vmax, high, "vmax")
-    if low > high:
-        raise StyleError(
-            f"vmin={low:g} lies above vmax={high:g} for {what[:1].lower()}{what[1:]}. Swap them."
-        )
+    scale: Any = Normalize()
     if norm is None:
-        norm = Normalize(low, high)
-    elif not callable(norm):
+        low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+        scale.vmin = low if vmin is None else _limit(vmin, "vmin")
+        scale.vmax = high if vmax is None else _limit(vmax, "vmax")
+        if scale.vmin > scale.vmax:
+            raise StyleError(
+                f"vmin={scale.vmin:g} lies above vmax={scale.vmax:g} for {what[:1].lower()}{what[1:]}. Swap them."
+            )
+    try:
+        if norm is not None:
+            scale = _scaled(norm, finite, vmin, vmax)
+        shares = scale(np.where(missing, finite[0] if finite.size else 0.0, numbers))
+    except StyleError:
+        raise
+    except ValueError as error:
+        raise StyleError(f"norm= cannot show {what[:1].lower()}{what[1:]}: {error}.") from error
+    hidden = np.ma.getmaskarray(shares) & ~missing
+    if hidden.any():
+        warn(
+            f"{what}: {int(hidden.sum())} values are not drawn, as {type(scale).__name__} gives them no colour."
+            " Give a norm for all values, or leave these rows out."
+        )
+    rgba = np.array(chosen(shares), dtype=np.float64).reshape(-1, 4)
+    extend = _extend(scale, numbers[~missing & ~hidden])
+    return _Painted(rgba, missing, "continuous", cmap=chosen, norm=scale, extend=extend, hidden=hidden)
+
+
+def _scaled(norm: Any, finite: NDArray[np.float64], vmin: float | None, vmax: float | None) -> Any:
+    """A copy of the normalisation with both limits set. Raises StyleError, and ValueError where none fit."""
+    from matplotlib.colors import LogNorm, Normalize
+
+    if not isinstance(norm, Normalize):
         raise StyleError(
             f"norm={norm!r} must be a matplotlib normalisation such as matplotlib.colors.LogNorm()."
         )
-    elif not norm.scaled():
-        norm.autoscale_None(np.array([low, high]))
-    rgba = np.array(chosen(norm(np.where(missing, low, numbers))), dtype=np.float64).reshape(-1, 4)
-    return _Painted(rgba, missing, "continuous", cmap=chosen, norm=norm)
+    scale = copy.deepcopy(norm)
+    for name, given in (("vmin", vmin), ("vmax", vmax)):
+        if given is None:
+            continue
+        limit, own = _limit(given, name), getattr(scale, name)
+        if own is None:
+            setattr(scale, name, limit)
+        elif own != limit:
+            raise StyleError(f"{name}={limit:g} is given, but norm= has {name}={own:g}. Leave one out.")
+    if not scale.scaled():
+        scale.autoscale_None(finite if finite.size else np.array([1.0, 10.0]))
+    if isinstance(scale, LogNorm) and not (scale.vmin or 0.0) > 0.0:
+        raise ValueError("a logarithm needs values above 0")
+    for name, given in (("vmin", vmin), ("vmax", vmax)):
+        if given is not None and getattr(scale, name) != given:
+            raise ValueError(f"with {name}={given:g} its limits are out of order")
+    return scale
 
 
-def _limit(value: Any, default: float, name: str) -> float:
-    if value is None:
-        return default
+def _extend(norm: Any, values: NDArray[np.float64]) -> Extend:
+    """Which limits of the normalisation values lie beyond."""
+    own: Extend | None = getattr(norm, "extend", None)
+    if own is not None and own != "neither":
+        return own
+    below, above = bool((values < norm.vmin).any()), bool((values > norm.vmax).any())
+    return "both" if below and above else "min" if below else "max" if above else "neither"
+
+
+def _limit(value: Any, name: str) -> float:
     try:
         number = float(value)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise StyleError(f"{name} must be a number, but it is {value!r}.") from error
     if not math.isfinite(number):
         raise StyleError(f"{name} must be finite, but it is {number}.")
@@ -333,6 +420,10 @@ def _limit(value: Any, default: float, name: str) -> float:
 def _missing_look(missing_kwds: Mapping[str, Any] | None) -> dict[str, Any]:
     if missing_kwds is None:
         return {}
+    if not isinstance(missing_kwds, Mapping):
+        raise StyleError(
+            f"missing_kwds must be a dict such as {{'color': 'grey'}}, but it is {missing_kwds!r}."
+        )
     unknown: Sequence[str] = [key for key in missing_kwds if key not in MISSING_KEYS]
     if unknown:
         raise StyleError(
@@ -350,3 +441,13 @@ def _missing_rgba(look: Mapping[str, Any], alpha: float | None) -> Rgba | None:
     if own is not None:
         return red, green, blue, float(own)
     return red, green, blue, opacity if alpha is None or opacity == 0.0 else alpha
+
+
+def _checked_legend_kwds(legend_kwds: Any) -> dict[str, Any]:
+    if legend_kwds is None:
+        return {}
+    if not isinstance(legend_kwds, Mapping) or not all(isinstance(key, str) for key in legend_kwds):
+        raise StyleError(
+            f"legend_kwds must be a dict such as {{'loc': 'upper left'}}, but it is {legend_kwds!r}."
+        )
+    return dict(legend_kwds)

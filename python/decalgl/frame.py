@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ._raster import check_memory
-from .errors import FileError, InputError
+from .errors import FileError, InputError, StyleError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from . import _core
     from .features import Kind
-    from .scene import Layer
+    from .layer import Layer
 
 
 # While they are made, the surface takes 60 bytes a pixel and the ids 16 and 4 more a technique.
@@ -171,8 +171,11 @@ class Frame:
             variants=list(given["variants"]),
         )
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | Path, *, legend: bool | None = None) -> None:
         """Writes the image in the format of the file's ending, such as .png, .jpg or .tif.
+
+        legend: None lays the legends of the layers that were added with legend=True over it; True does so and
+            raises StyleError where there is none; False leaves them out. `image` never has them.
 
         PNG, WebP and TIFF keep alpha; in other formats what is transparent becomes white. Raises FileError.
         """
@@ -181,6 +184,17 @@ class Frame:
         path = Path(path)
         file_format = picture_format(path)
         picture = Image.fromarray(self.image)
+        explained = [] if legend is False else self._explained_layers()
+        if explained:
+            from .legend import overlay
+
+            self._check_memory("legends")
+            picture = Image.alpha_composite(picture, Image.fromarray(overlay(explained, self.size)))
+        elif legend:
+            raise StyleError(
+                "There is no legend to draw. Add layers with legend=True; a scene that was opened from a file has"
+                " none, so preprocess the scene itself."
+            )
         if file_format not in KEEP_ALPHA:
             white = Image.new("RGBA", picture.size, "white")
             picture = Image.alpha_composite(white, picture).convert("RGB")
@@ -189,6 +203,11 @@ class Frame:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise FileError(f"Cannot write {path}: {reason}. Check the folder and its rights.") from error
+
+    def _explained_layers(self) -> list[Layer]:
+        from .layer import Layer
+
+        return [layer for layer in self._layers if isinstance(layer, Layer) and layer.coloring.legend]
 
     def _check_memory(self, what: str) -> None:
         if what in self._read or self._core.image.nbytes < 4 * LARGE_PICTURE:

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ._choices import LayerRows
 from ._colors import colormap, parse_color
+from ._values import is_word
 from .camera import Camera
-from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, UnsupportedError, close_matches
 from .features import LARGEST_COORDINATE, FeatureTable, Kind, read_features
-from .strokes import Fill, Stroke
+from .layer import Layer
+from .legend import require_drawable
+from .strokes import MITER_LIMIT
+from .styles import ColorKeywords, StrokeKeywords
+from .styling import WIDEST_LINE, LineKeywords, PolygonKeywords
 from .terrain import Terrain
+
+__all__ = ["Layer", "Relief", "Scene"]
 
 if TYPE_CHECKING:
     import os
@@ -24,12 +31,10 @@ if TYPE_CHECKING:
     from ._sources import Attributes
     from .frame import Frame
     from .renderer import Renderer
-    from .strokes import OutlineMode, OutlineOrder
+    from .styles import Casing, Outline, WidthUnits
 
 Technique = Literal["auto", "static"]
 PLANNED_TECHNIQUES = ("dynamic",)
-# A line this many times as wide as the terrain is long has a width in the wrong unit.
-WIDEST_LINE = 1e4
 
 
 @dataclass(frozen=True)
@@ -73,75 +78,6 @@ class Relief:
         object.__setattr__(self, "color", parse_color(self.color))
         if self.cmap is not None:
             object.__setattr__(self, "cmap", colormap(self.cmap))
-
-
-@dataclass(frozen=True, eq=False)
-class Layer:
-    """One layer of a scene, ready to draw.
-
-    features: the geometry on the scene's plane.
-    fill: of polygons; None for lines.
-    stroke: of lines, or the outlines of polygons; None for polygons without.
-    casing: of lines, under the strokes of all of them; None without.
-    outline_mode: which side of a polygon's border its outline lies on. outline_order: over all fills of the layer,
-        or each over its own feature's.
-    draw_order: int64 (features), features from bottom to top.
-    coloring: how the colours came about, for legends.
-    """
-
-    name: str
-    index: int
-    features: FeatureTable
-    draw_order: NDArray[np.int64] = field(repr=False)
-    coloring: Coloring = field(repr=False)
-    fill: Fill | None = field(default=None, repr=False)
-    stroke: Stroke | None = field(default=None, repr=False)
-    casing: Stroke | None = field(default=None, repr=False)
-    outline_mode: OutlineMode = "normal"
-    outline_order: OutlineOrder = "layer"
-
-    def __post_init__(self) -> None:
-        self.draw_order.flags.writeable = False
-
-    @property
-    def kind(self) -> Kind:
-        """What its features are: "polygons" or "lines"."""
-        return self.features.kind
-
-    @property
-    def colors(self) -> NDArray[np.uint8]:
-        """uint8 (features, 4), of the fills of polygons or the strokes of lines; alpha 0 is not drawn."""
-        own = self.fill or self.stroke
-        assert own is not None
-        return own.colors
-
-    @property
-    def widths(self) -> NDArray[np.float64]:
-        """float64 (features), metres on the map plane of the strokes of lines; zeros for polygons."""
-        if self.kind == "polygons" or self.stroke is None:
-            return np.zeros(len(self.features))
-        return self.stroke.widths
-
-    @property
-    def rows(self) -> NDArray[np.int64]:
-        """int64 (features), each feature's row in the data that the layer was made of."""
-        return self.features.rows
-
-
-@dataclass(frozen=True)
-class _Styling:
-    """The keywords that colour a layer, as `resolve_colors` takes them."""
-
-    column: Any
-    cmap: Any
-    color: Any
-    vmin: float | None
-    vmax: float | None
-    norm: Any
-    alpha: Any
-    categorical: bool | None
-    legend: bool
-    missing_kwds: Mapping[str, Any] | None
 
 
 class Scene:
@@ -222,7 +158,10 @@ class Scene:
         alpha: Any = None,
         categorical: bool | None = None,
         legend: bool = False,
+        legend_kwds: Mapping[str, Any] | None = None,
         missing_kwds: Mapping[str, Any] | None = None,
+        hatch: Any = None,
+        outline: Outline | None = None,
         order: Any = "feature",
         technique: Technique = "auto",
     ) -> Layer:
@@ -231,21 +170,28 @@ class Scene:
         data: whatever `decalgl.features.read_features` reads; inside is even-odd over all rings of a feature.
         name: of the layer, for messages and legends. layer: the one to read of a file with several.
         crs: of data that carries none.
-        column ... missing_kwds: colours, as in `GeoDataFrame.plot`.
+        column ... missing_kwds: colours, as in `GeoDataFrame.plot`; color="none" for outlines alone.
+        legend, legend_kwds: whether `Frame.save` draws a legend, and how, as in `GeoDataFrame.plot`.
+        hatch: a `Hatch` in place of an even fill; or one (or None) for each row, the name of a column of them, or
+            a dict {category: hatch} by the categories of `column`.
+        outline: an `Outline`.
         order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
             missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
 
         Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """
-        styling = _Styling(column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, missing_kwds)
-        return self._add("polygons", data, name, layer, crs, styling, order, technique, width=None)
+        colors = ColorKeywords(
+            column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, legend_kwds, missing_kwds
+        )
+        looks = PolygonKeywords(colors, hatch, outline)
+        return self._add("polygons", data, name, layer, crs, looks, order, technique)
 
     def add_lines(
         self,
         data: Any,
         *,
         width: Any = 1.0,
-        width_units: Literal["m", "px"] = "px",
+        width_units: WidthUnits = "px",
         name: str | None = None,
         layer: str | int | None = None,
         crs: Any = None,
@@ -258,24 +204,47 @@ class Scene:
         alpha: Any = None,
         categorical: bool | None = None,
         legend: bool = False,
+        legend_kwds: Mapping[str, Any] | None = None,
         missing_kwds: Mapping[str, Any] | None = None,
-        corner: str = "round",
-        cap: str = "round",
+        corner: Any = "round",
+        cap: Any = "round",
+        miter_limit: float = MITER_LIMIT,
+        dash: Any = None,
+        casing: Casing | None = None,
+        bands: Any = None,
+        slope_correction: Literal["thoeny", "tangent"] | None = None,
+        widest: float | None = None,
         order: Any = "feature",
         technique: Technique = "auto",
     ) -> Layer:
         """Adds a layer of lines on top of the others.
 
-        width: one number, one for each row, or a column's name.
-        width_units: "m", metres on the map plane. "px", pixels on the screen, is not drawn by this version.
-        corner, cap: "round".
+        width: one number, one for each row, a column's name, or a dict {category: width} by the categories of
+            `column`. width_units: "m", metres on the map plane. "px", pixels on the screen, is not drawn by this
+            version.
+        corner: "round", "miter" or "bevel". cap: "round", "butt" or "square". Each is one for all, one for each
+            row, a column's name, or a dict by category.
+        miter_limit: degrees between two segments; sharper corners than that are round.
+        dash: "dashed", "dotted" or "dashdot", matplotlib's, as multiples of each line's width; lengths on, off, on,
+            ... in metres, such as (10, 5), or (offset, (10, 5)); or a `Pattern`. As `corner`, by row or category.
+        casing: a `Casing` under the lines.
+        bands: colours across the line, [(reach, colour), ...] from its middle outwards, each to a share of the half
+            width, the last to 1. They take the place of the line's colour, whose opacity they keep.
+        slope_correction: None, widths as they are on the map; "tangent", as they are on the slope; "thoeny",
+            narrower on slopes seen from the side (Thöny 2018).
+        widest: metres that lines may be widened to later without preparing anew.
         order: "feature" (later on top), "size" (longer on top), or a column or numbers (higher on top).
         The other arguments, and the errors, are those of `add_polygons`; StyleError too for widths that are
         not positive, UnsupportedError for what this version does not draw.
         """
-        _require_line_style(self._layer_name(name, "lines"), width_units, corner, cap)
-        styling = _Styling(column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, missing_kwds)
-        return self._add("lines", data, name, layer, crs, styling, order, technique, width=width)
+        colors = ColorKeywords(
+            column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, legend_kwds, missing_kwds
+        )
+        stroke = StrokeKeywords(
+            width, width_units, corner, cap, miter_limit, dash, bands, slope_correction, widest
+        )
+        looks = LineKeywords(colors, stroke, casing)
+        return self._add("lines", data, name, layer, crs, looks, order, technique)
 
     def home(self) -> Camera:
         """A camera that shows the whole terrain obliquely from the south."""
@@ -311,9 +280,6 @@ class Scene:
         self._renderer.update(camera)
         return self._renderer.render(background=background)
 
-    def _layer_name(self, name: str | None, kind: Kind) -> str:
-        return f"{kind} {len(self._layers)}" if name is None else str(name)
-
     def _add(
         self,
         kind: Kind,
@@ -321,54 +287,25 @@ class Scene:
         name: str | None,
         file_layer: str | int | None,
         crs: Any,
-        styling: _Styling,
+        looks: LineKeywords | PolygonKeywords,
         order: Any,
         technique: str,
-        width: Any,
     ) -> Layer:
-        name = self._layer_name(name, kind)
+        name = f"{kind} {len(self._layers)}" if name is None else str(name)
+        looks.check(name)
         _require_technique(name, technique)
         table, attributes = read_features(
             data, kind, terrain_crs=self.terrain.crs, layer_name=name, crs=crs, layer=file_layer
         )
-        try:
-            coloring = resolve_colors(attributes.count, attributes, rows=table.rows, **vars(styling))
-        except StyleError as error:
-            if repr(name) in str(error):
-                raise
-            raise StyleError(f"Layer {name!r}: {error}") from error
-        draw_order = _draw_order(order, table, attributes)
-        layer = Layer(
-            name,
-            len(self._layers),
-            table,
-            draw_order,
-            coloring,
-            fill=Fill(coloring.colors) if kind == "polygons" else None,
-            stroke=None
-            if kind == "polygons"
-            else Stroke(coloring.colors, self._widths(width, table, attributes)),
-        )
-        self._layers.append(layer)
-        return layer
-
-    def _widths(self, width: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.float64]:
-        widths = attributes.numbers(width, "width")[table.rows]
         x0, y0, x1, y1 = self.terrain.bounds
         widest = WIDEST_LINE * (max(x1 - x0, y1 - y0) or 1.0)
-        wrong = np.flatnonzero(~((widths > 0.0) & (widths <= widest)))
-        if wrong.size:
-            found = widths[wrong[0]]
-            problem = (
-                f"is wider than {WIDEST_LINE:g} times the terrain"
-                if found > 0
-                else "is not a positive length"
-            )
-            raise StyleError(
-                f"Layer {attributes.layer_name!r}, row {table.rows[wrong[0]]}: width {found:g} {problem}."
-                " Give every line a width above 0, in metres."
-            )
-        return widths
+        resolved = looks.resolve(LayerRows(name, attributes, table.rows, widest))
+        draw_order = draw_order_of(order, table, attributes)
+        layer = Layer(name, len(self._layers), table, draw_order, **vars(resolved))
+        if layer.coloring.legend:
+            require_drawable(layer)
+        self._layers.append(layer)
+        return layer
 
 
 def _finite(value: Any, what: str) -> float:
@@ -406,9 +343,9 @@ def _checked_exaggeration(terrain: Terrain, exaggeration: Any) -> float:
 
 
 def _require_technique(layer_name: str, technique: str) -> None:
-    if technique in ("auto", "static"):
+    if is_word(technique, ("auto", "static")):
         return
-    if technique in PLANNED_TECHNIQUES:
+    if is_word(technique, PLANNED_TECHNIQUES):
         raise UnsupportedError(
             f"Layer {layer_name!r}: technique={technique!r} is not drawn by this version. Use 'auto' or"
             " 'static'."
@@ -419,28 +356,8 @@ def _require_technique(layer_name: str, technique: str) -> None:
     )
 
 
-def _require_line_style(layer_name: str, width_units: str, corner: str, cap: str) -> None:
-    if width_units == "px":
-        raise UnsupportedError(
-            f"Layer {layer_name!r}: widths in pixels (width_units='px', the default) are not drawn by this"
-            " version. Give the width on the ground in metres, such as width=5, width_units='m'."
-        )
-    if width_units != "m":
-        raise StyleError(f"Layer {layer_name!r}: width_units must be 'm' or 'px', but it is {width_units!r}.")
-    corners, caps = ("round", "miter", "bevel"), ("round", "butt", "square")
-    for keyword, value, known in (("corner", corner, corners), ("cap", cap, caps)):
-        if value not in known:
-            raise StyleError(
-                f"Layer {layer_name!r}: there is no {keyword}={value!r}.{close_matches(value, known)} Known"
-                f" are {', '.join(known)}."
-            )
-        if value != "round":
-            raise UnsupportedError(
-                f"Layer {layer_name!r}: {keyword}={value!r} is not drawn by this version. Use 'round'."
-            )
-
-
-def _draw_order(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
+def draw_order_of(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
+    """Features from bottom to top: "feature", "size", a column or numbers. Raises ColumnError, InputError."""
     if isinstance(order, str) and order == "feature":
         return np.arange(len(table), dtype=np.int64)
     if isinstance(order, str) and order == "size":

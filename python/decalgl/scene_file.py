@@ -4,8 +4,10 @@
                                      exaggeration, crs, band
     [relief]                         color, cmap, vmin, vmax, azimuth, altitude, strength, on_layers
     [[layers]]                       type = "polygons" or "lines", path, name, layer, crs,
-                                     column, cmap, color, vmin, vmax, alpha, categorical, legend,
-                                     missing_kwds, order; lines also width, width_units
+                                     column, cmap, color, vmin, vmax, norm, alpha, categorical, legend,
+                                     legend_kwds, missing_kwds, order
+                                     lines: width, width_units, corner, cap, miter_limit, dash, bands, widest,
+                                     slope_correction, casing (a table); polygons: hatch, outline (tables)
     [views.NAME]                     look_at  = { eye = [x, y, z], target = [x, y, z], fov, crs }
                                      orbit    = { target = [x, y, z], distance, azimuth, elevation, fov, crs }
                                      top_down = { bounds = [xmin, ymin, xmax, ymax], margin, crs }
@@ -24,6 +26,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ._crs import parse_crs
+from ._scene_file_styles import parse_style, present
 from ._tables import StrictTable
 from .errors import FileError, InputError
 from .indexes import INDEXES
@@ -209,28 +212,23 @@ def _to_plane(keywords: dict[str, Any], crs: str, terrain: Terrain, name: str) -
     return keywords
 
 
-def _present(**values: Any) -> dict[str, Any]:
-    """Only what was given, so that defaults stay where they are defined."""
-    return {key: value for key, value in values.items() if value is not None}
-
-
 def _parse_terrain(table: StrictTable, folder: Path) -> dict[str, Any]:
     path, bounds = table.text("path"), table.numbers("flat", 4)
     if (path is None) == (bounds is None):
         raise table.error("give either path (a raster) or flat (bounds), one of the two.")
     crs = table.text("crs")
     if path is not None:
-        result = _present(path=data_path(path, folder), crs=crs, band=table.integer("band"))
+        result = present(path=data_path(path, folder), crs=crs, band=table.integer("band"))
     else:
-        result = _present(bounds=bounds, crs=crs, height=table.number("height"))
+        result = present(bounds=bounds, crs=crs, height=table.number("height"))
     table.finish()
     return result
 
 
 def _parse_relief(table: StrictTable) -> dict[str, Any]:
-    result = _present(color=table.text("color"), cmap=table.text("cmap"))
+    result = present(color=table.text("color"), cmap=table.text("cmap"))
     for key in ("vmin", "vmax", "azimuth", "altitude", "strength", "on_layers"):
-        result |= _present(**{key: table.number(key)})
+        result |= present(**{key: table.number(key)})
     table.finish()
     return result
 
@@ -252,49 +250,15 @@ def _parse_layer(table: StrictTable, folder: Path) -> LayerDescription:
     name = table.text("name")
     if name is not None:
         table.name += f" ({name})"
-    keywords = _present(
+    keywords = present(
         name=name or Path(path).name.split(".")[0],
         layer=table.text("layer"),
         crs=table.text("crs"),
         order=table.text("order"),
     )
-    keywords |= _parse_style(table)
-    if kind == "lines":
-        keywords |= _present(
-            width=table.number("width"), width_units=table.choice("width_units", ("px", "m"))
-        )
+    keywords |= parse_style(table, kind)
     table.finish()
     return LayerDescription(kind, data_path(path, folder), keywords)
-
-
-def _parse_style(table: StrictTable) -> dict[str, Any]:
-    """The styling keywords that all layers have, with GeoPandas' names."""
-    cmap = table.value("cmap")
-    if isinstance(cmap, dict):
-        cmap = dict(cmap)
-        wrong = [key for key, color in cmap.items() if not isinstance(color, str)]
-        if wrong:
-            raise table.error(
-                f"cmap must give each category a colour in quotes, but {wrong[0]!r} has {cmap[wrong[0]]!r}."
-            )
-    elif cmap is not None and not isinstance(cmap, str):
-        raise table.error(f"cmap must be a colormap's name or a table of colours, but it is {cmap!r}.")
-    missing = table.value("missing_kwds")
-    if missing is not None and not isinstance(missing, dict):
-        raise table.error(
-            f"missing_kwds must be a table such as {{ color = 'grey' }}, but it is {missing!r}."
-        )
-    return _present(
-        column=table.text("column"),
-        cmap=cmap,
-        color=table.text("color"),
-        vmin=table.number("vmin"),
-        vmax=table.number("vmax"),
-        alpha=table.number("alpha"),
-        categorical=table.flag("categorical"),
-        legend=table.flag("legend"),
-        missing_kwds=missing,
-    )
 
 
 def _parse_view(views: StrictTable, name: str) -> ViewDescription:
@@ -310,10 +274,10 @@ def _parse_view(views: StrictTable, name: str) -> ViewDescription:
     assert inner is not None
     crs = inner.text("crs")
     if kind == "top_down":
-        keywords = _present(bounds=inner.numbers("bounds", 4), margin=inner.number("margin"))
+        keywords = present(bounds=inner.numbers("bounds", 4), margin=inner.number("margin"))
     else:
         keywords = {"target": inner.required("target", inner.numbers("target", 3))}
-        keywords |= _present(fov=inner.number("fov"))
+        keywords |= present(fov=inner.number("fov"))
         if kind == "look_at":
             keywords["eye"] = inner.required("eye", inner.numbers("eye", 3))
         else:
@@ -330,7 +294,7 @@ def _parse_picture(table: StrictTable) -> PictureOptions:
         raise table.error(
             f"size must be two whole numbers of pixels above 0, [width, height], but it is {size!r}."
         )
-    given = _present(
+    given = present(
         size=tuple(size) if size else None,
         antialias=table.text("antialias"),
         view=table.text("view"),

@@ -9,6 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from ._values import finite_number, flag
+from .errors import StyleError
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -85,13 +88,28 @@ class Stroke:
 
 
 @dataclass(frozen=True)
-class HatchPattern:
-    """Parallel lines `spacing` metres apart and `width` metres wide; angle in degrees from east, to the left."""
+class Hatch:
+    """Parallel lines on the map, in a fill's colour, in place of an even fill.
+
+    spacing: metres from line to line, between their middles. width: metres.
+    angle: degrees from east, to the left. crossed: with a second set at right angles.
+
+    Raises StyleError.
+    """
 
     spacing: float
     width: float
     angle: float = 45.0
     crossed: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("spacing", "width"):
+            length = finite_number(getattr(self, name), f"Hatch {name}")
+            if length <= 0.0:
+                raise StyleError(f"Hatch {name} must be a length above 0 in metres, but it is {length:g}.")
+            object.__setattr__(self, name, length)
+        object.__setattr__(self, "angle", finite_number(self.angle, "Hatch angle"))
+        object.__setattr__(self, "crossed", flag(self.crossed, "Hatch crossed"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +121,7 @@ class Fill:
     """
 
     colors: NDArray[np.uint8] = field(repr=False)
-    hatches: tuple[HatchPattern | None, ...] = (None,)
+    hatches: tuple[Hatch | None, ...] = (None,)
     hatch_of: NDArray[np.uint32] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:

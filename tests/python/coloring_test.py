@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib import pyplot as plt
-from matplotlib.colors import LogNorm, to_rgba
+from matplotlib.colors import BoundaryNorm, LogNorm, Normalize, PowerNorm, TwoSlopeNorm, to_rgba
 from shapely import box
 
 from decalgl.coloring import resolve_colors
@@ -60,6 +60,13 @@ def geopandas_colors(data: Any, **style: Any) -> Any:
         {"column": "height"},
         {"column": "height", "cmap": "Greens", "vmin": 0, "vmax": 10},
         {"column": "height", "norm": LogNorm(), "alpha": 0.5},
+        {"column": "height", "norm": LogNorm(2, 5)},
+        {"column": "height", "norm": TwoSlopeNorm(4.0)},
+        {"column": "height", "norm": TwoSlopeNorm(0.0), "cmap": "RdBu"},
+        {"column": "height", "norm": TwoSlopeNorm(2.0, vmin=-5.0, vmax=5.0)},
+        {"column": "height", "norm": BoundaryNorm([0, 2, 6, 9], 256)},
+        {"column": "height", "norm": BoundaryNorm([2, 4, 6], 7, extend="both"), "cmap": "Set2"},
+        {"column": "height", "norm": PowerNorm(0.5, clip=True)},
         {"column": "height", "categorical": True},
         {"column": "kind"},
         {"column": "kind", "cmap": "Set2"},
@@ -175,6 +182,43 @@ def test_infinite_values_take_the_ends_of_the_colormap() -> None:
     np.testing.assert_array_equal(colors[3], colors[2])
 
 
+def test_norms_find_their_limits_among_what_they_can_show() -> None:
+    norm = LogNorm()
+    with pytest.warns(DecalWarning, match="column=: 2 values are not drawn, as LogNorm gives them no colour"):
+        coloring = resolve_colors(5, column=[0.0, 1.0, 10.0, 100.0, -5.0], norm=norm)
+    assert (coloring.vmin, coloring.vmax) == (1.0, 100.0)
+    np.testing.assert_array_equal(coloring.colors[1:4], as_bytes(*mpl.colormaps["viridis"]([0.0, 0.5, 1.0])))
+    assert coloring.colors[[0, 4], 3].tolist() == [0, 0]
+    assert coloring.left_out.tolist() == [True, False, False, False, True]
+    assert not norm.scaled(), "the user's own stays as it was, for the next layer"
+    assert norm.vmin is None
+
+
+def test_norms_take_the_limits_that_are_given() -> None:
+    coloring = resolve_colors(3, column=[1.0, 10.0, 50.0], norm=LogNorm(), vmin=0.1, vmax=10)
+    assert (coloring.vmin, coloring.vmax, coloring.extend) == (0.1, 10.0, "max")
+    same = resolve_colors(3, column=[1.0, 10.0, 50.0], norm=LogNorm(0.1), vmin=0.1)
+    assert (same.vmin, same.vmax, same.extend) == (0.1, 50.0, "neither")
+    nothing = resolve_colors(2, column=[np.nan, np.nan], norm=LogNorm(1, 10))
+    assert nothing.colors[:, 3].tolist() == [0, 0]
+
+
+def test_legends_know_each_row() -> None:
+    coloring = resolve_colors(4, column=["b", None, "a", "b"], missing_kwds={}, rows=np.array([3, 1, 2]))
+    assert coloring.labels == ("a", "b", "NaN")
+    assert coloring.label_of.tolist() == [1, 2, 0]
+    assert coloring.left_out.tolist() == [False] * 3
+    named = resolve_colors(
+        3, column=["a", "b", "c"], cmap={"c": "red", "b": "blue"}, missing_kwds={"label": "other"}
+    )
+    assert named.labels == ("b", "c", "other")
+    assert named.label_of.tolist() == [2, 0, 1]
+    plain = resolve_colors(2, column=["a", None], alpha=0.5, legend_kwds={"loc": "best"})
+    assert plain.label_of.tolist() == [0, -1]
+    assert plain.left_out.tolist() == [False, True]
+    assert (plain.alpha, plain.legend_kwds) == (0.5, {"loc": "best"})
+
+
 def test_color_wins_over_column_with_a_warning() -> None:
     with pytest.warns(DecalWarning, match="color= is used"):
         coloring = resolve_colors(2, color="red", column=[1, 2])
@@ -199,6 +243,12 @@ def test_color_wins_over_column_with_a_warning() -> None:
         ({"column": [1, 2, 3], "vmin": "low"}, "vmin must be a number"),
         ({"column": [1, 2, 3], "vmax": np.inf}, "vmax must be finite"),
         ({"column": [1, 2, 3], "norm": "log"}, "norm='log'"),
+        ({"column": [1, 2, 3], "norm": LogNorm}, "norm=.*LogNorm.*must be a matplotlib normalisation"),
+        ({"column": [1, 2, 3], "norm": LogNorm(-1, 5)}, "norm= cannot show column="),
+        ({"column": [-1, -2, -3], "norm": LogNorm()}, "norm= cannot show column="),
+        ({"column": [1, 2, 3], "norm": TwoSlopeNorm(2.5), "vmin": 7}, "norm= cannot show column="),
+        ({"column": [1, 2, 3], "norm": Normalize(0, 5), "vmax": 3}, "vmax=3 is given, but norm= has vmax=5"),
+        ({"column": [1, 2, 3], "norm": LogNorm(), "vmin": "low"}, "vmin must be a number"),
         ({"column": [1, 2]}, "3 rows"),
         ({"column": ["a", "b", "c"], "categorical": False}, "categorical=False"),
         ({"column": "kind"}, "no columns"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import re
 import shlex
@@ -14,6 +15,7 @@ import pytest
 from PIL import Image
 
 import decalgl as dg
+from decalgl.scene_file import read_scene_file
 from small_scenes import flat_scene
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -72,6 +74,31 @@ def test_the_stages_by_hand() -> None:
     names: dict[str, Any] = {"dg": dg, "scene": flat_scene()}
     exec(example, names)
     assert names["frame"].image.shape == (360, 640, 4)
+
+
+def test_the_styles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = ROOT / "docs" / "styles.md"
+    (example,) = blocks(page, "python")
+    monkeypatch.chdir(tmp_path)
+    scene = flat_scene()
+    exec(example, {"dg": dg, "scene": scene})
+    with Image.open("map.png") as picture:
+        assert picture.size == (640, 640)
+    assert [len(layer.legend_handles()) for layer in scene.layers] == [3, 3]
+    (description,) = blocks(page, "toml")
+    Path("scene.toml").write_text(description)
+    areas, ways = read_scene_file("scene.toml").layers
+    assert set(areas.keywords) > {"outline", "hatch"}
+    assert set(ways.keywords) > {"dash", "casing", "bands"}
+
+
+def test_the_styles_name_every_keyword() -> None:
+    text = (ROOT / "docs" / "styles.md").read_text()
+    for look in (dg.Casing, dg.Outline, dg.Hatch, dg.Pattern):
+        names = [field.name for field in dataclasses.fields(look)]
+        assert not [
+            name for name in names if not re.search(rf"`{name}[`=]|[ (]{name}[=,)]|\b{name} =", text)
+        ], look
 
 
 @pytest.mark.parametrize("page", PAGES, ids=[str(page.relative_to(ROOT)) for page in PAGES])

@@ -54,6 +54,34 @@ CAMERA = _core.Camera((50.0, 50.0, 100.0), (50.0, 50.0, 0.0), (0.0, 1.0, 0.0), 6
 SKY = (0.0, 0.0, 0.0, 0.0)
 
 
+def core_fill(colors: Any, *hatches: Any, hatch_of: Any = None) -> _core.Fill:
+    fill = _core.Fill()
+    fill.colors = colors
+    if hatches:
+        fill.hatches = list(hatches)
+    if hatch_of is not None:
+        fill.hatch_of = hatch_of
+    return fill
+
+
+def core_stroke(
+    colors: Any, widths: Any, *styles: Any, style_of: Any = None, widest: float = 0.0
+) -> _core.Stroke:
+    stroke = _core.Stroke()
+    stroke.colors, stroke.widths, stroke.widest = colors, widths, widest
+    if styles:
+        stroke.styles = list(styles)
+    if style_of is not None:
+        stroke.style_of = style_of
+    return stroke
+
+
+NORMAL, OVER_ALL = _core.OutlineMode.__members__["normal"], _core.OutlineOrder.__members__["layer"]
+NO_OUTLINES = (_core.Stroke(), _core.Stroke(), NORMAL, OVER_ALL)
+PLAIN = {"fill": _core.Fill(), "stroke": _core.Stroke(), "casing": _core.Stroke(),
+         "outline_mode": NORMAL, "outline_order": OVER_ALL}  # fmt: skip
+
+
 def attempt(*steps: Any) -> bool:
     """Runs the steps until one is refused; whether none was. Any other exception comes through."""
     try:
@@ -78,7 +106,8 @@ def assert_draws(renderer: _core.Renderer) -> None:
     scene = core_scene()
     square = np.array([[0, 0], [100, 0], [100, 100], [0, 100]], dtype=np.float64)
     one = np.array([0, 1])
-    scene.add_layer("a", True, square, 4 * one, one, one[:1], np.full(4, 255, np.uint8), np.zeros(0), one[:1])
+    fill = core_fill(np.full(4, 255, np.uint8))
+    scene.add_layer("a", True, square, 4 * one, one, one[:1], fill, *NO_OUTLINES, one[:1])
     render_all(renderer, scene)
 
 
@@ -91,31 +120,109 @@ def test_layers(renderer: _core.Renderer, data: Any) -> None:
         "part_offsets": data.draw(offsets),
         "feature_offsets": data.draw(offsets),
         "rows": data.draw(offsets),
-        "colors": data.draw(arrays(st.integers(0, 255).map(float))),
-        "widths": data.draw(arrays(odd_floats)),
         "draw_order": data.draw(offsets),
     }
-    attempt(lambda: scene.add_layer(name="odd", polygons=data.draw(st.booleans()), **given_arrays))
+    colors = st.integers(0, 255).map(float)
+    places = st.none() | arrays(odd_integers.map(float))
+
+    def add() -> None:
+        looks = dict(PLAIN)
+        if data.draw(st.booleans()):
+            looks["fill"] = core_fill(data.draw(arrays(colors)), hatch_of=data.draw(places))
+        for role in ("stroke", "casing"):
+            if data.draw(st.booleans()):
+                widths, style_of = data.draw(arrays(odd_floats)), data.draw(places)
+                looks[role] = core_stroke(data.draw(arrays(colors)), widths, style_of=style_of)
+        scene.add_layer(name="odd", polygons=data.draw(st.booleans()), **given_arrays, **looks)
+
+    attempt(add)
     attempt(lambda: render_all(renderer, scene))
     assert_draws(renderer)
 
 
+lengths = odd_floats | st.floats(0.01, 50.0)
+
+
+def odd_hatches(plain: bool) -> Any:
+    sizes, angles = (st.floats(0.01, 50.0), st.floats(-360, 360)) if plain else (lengths, odd_floats)
+    return st.builds(_core.Hatch, spacing=sizes, width=sizes, angle=angles, crossed=st.booleans())
+
+
+@st.composite
+def plain_styles(draw: Any) -> _core.StrokeStyle:
+    """Styles that fit."""
+    style = any_words(draw)
+    style.miter_limit = draw(st.floats(0, 180))
+    if draw(st.booleans()):
+        period = draw(st.floats(0.5, 50.0))
+        begin, end = draw(st.floats(0.0, 0.4)), draw(st.floats(0.5, 1.0))
+        shares = draw(st.lists(st.floats(0, 1), min_size=2, max_size=2))
+        mark = _core.PatternMark(begin * period, end * period, *shares)
+        style.pattern = _core.LinePattern(period, draw(st.floats(-99, 99)), [mark] * draw(st.integers(1, 3)))
+    reaches = draw(st.sampled_from([[], [1.0], [0.3, 1.0], [0.1, 0.5, 1.0]]))
+    style.bands = [_core.ColorBand(reach, [200, 10, 10, 90]) for reach in reaches]
+    return style
+
+
+def any_words(draw: Any) -> _core.StrokeStyle:
+    style = _core.StrokeStyle()
+    style.corner = draw(st.sampled_from(list(_core.Corner.__members__.values())))
+    style.cap = draw(st.sampled_from(list(_core.Cap.__members__.values())))
+    style.slope_correction = draw(st.sampled_from(list(_core.SlopeCorrection.__members__.values())))
+    return style
+
+
+@st.composite
+def odd_styles(draw: Any) -> _core.StrokeStyle:
+    """Styles of which most are refused."""
+    style = any_words(draw)
+    style.miter_limit = draw(st.floats(0, 180) | odd_floats)
+    if draw(st.booleans()):
+        period = draw(lengths)
+        ends = sorted(draw(st.lists(st.floats(0, 1), min_size=2, max_size=2)))
+        shares = draw(st.lists(st.floats(0, 1) | odd_floats, min_size=2, max_size=2))
+        mark = _core.PatternMark(ends[0] * period, ends[1] * period, *shares)
+        style.pattern = _core.LinePattern(period, draw(odd_floats), [mark] * draw(st.integers(0, 17)))
+    reaches = sorted(draw(st.lists(st.floats(0, 1), max_size=3))) + draw(st.sampled_from([[], [1.0]]))
+    style.bands = [_core.ColorBand(reach, [200, 10, 10, 90]) for reach in reaches]
+    return style
+
+
 @st.composite
 def fitting_layers(draw: Any) -> dict[str, Any]:
-    """Layers whose offsets fit, with odd coordinates and widths."""
+    """Layers whose offsets fit: half of them ordinary, the others with odd coordinates, widths and styles."""
+    ordinary = draw(st.booleans())
+    places, breadths = (st.floats(-200, 200), st.floats(0, 60)) if ordinary else (odd_floats, odd_floats)
+    styles = st.lists(plain_styles() if ordinary else odd_styles(), max_size=1 if ordinary else 2)
     sizes = draw(st.lists(st.integers(0, 6), min_size=1, max_size=4))
     count = len(sizes)
-    point = st.tuples(odd_floats, odd_floats)
+    point = st.tuples(places, places)
     coordinates = draw(st.lists(point, min_size=sum(sizes), max_size=sum(sizes)))
     polygons = draw(st.booleans())
+    rgba = np.array([200, 10, 10, draw(st.sampled_from([0, 90, 255]))] * count, dtype=np.uint8)
+    looks = dict(PLAIN)
+    if polygons:
+        looks["fill"] = core_fill(rgba, *draw(st.lists(odd_hatches(plain=ordinary), max_size=2)))
+    if not polygons or draw(st.booleans()):
+        widths = np.array(draw(st.lists(breadths, min_size=count, max_size=count)))
+        looks["outline_mode"] = _core.OutlineMode.__members__[
+            draw(st.sampled_from(["normal", "inset", "offset"]))
+        ]
+        looks["outline_order"] = _core.OutlineOrder.__members__[draw(st.sampled_from(["layer", "feature"]))]
+        for role in ("stroke",) if polygons else ("stroke", "casing"):
+            looks[role] = core_stroke(
+                rgba,
+                widths,
+                *draw(styles),
+                widest=draw(st.just(0.0) | breadths),
+            )
     return {
+        **looks,
         "polygons": polygons,
         "coordinates": np.array(coordinates, dtype=np.float64).reshape(-1, 2),
         "part_offsets": np.cumsum([0, *sizes]),
         "feature_offsets": np.arange(count + 1),
         "rows": np.arange(count),
-        "colors": np.array([200, 10, 10, draw(st.sampled_from([0, 90, 255]))] * count, dtype=np.uint8),
-        "widths": np.array([] if polygons else draw(st.lists(odd_floats, min_size=count, max_size=count))),
         "draw_order": np.array(draw(st.permutations(range(count))), dtype=np.int64),
     }
 

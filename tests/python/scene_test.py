@@ -238,9 +238,7 @@ def test_bad_layers_name_what_is_wrong(data: Any, options: Any, error: type[Exce
         ({"width": [1, 2, 3], "width_units": "m"}, dg.InputError, "'roads'.*2 rows"),
         ({"width": "breadth", "width_units": "m"}, dg.ColumnError, "'roads' has no column 'breadth'"),
         ({"width": None, "width_units": "m"}, dg.StyleError, "'roads'"),
-        ({"width_units": "m", "corner": "miter"}, dg.UnsupportedError, "'roads'.*'round'"),
         ({"width_units": "m", "corner": "mitre"}, dg.StyleError, "Did you mean 'miter'"),
-        ({"width_units": "m", "cap": "butt"}, dg.UnsupportedError, "'roads'.*'round'"),
     ],
 )
 def test_bad_line_styles_name_what_is_wrong(options: Any, error: type[Exception], message: str) -> None:
