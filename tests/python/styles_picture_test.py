@@ -15,6 +15,7 @@ import pytest
 
 import decalgl as dg
 import judge
+import rounding
 import styles
 from decalgl import reference as ref
 from shapes import with_features
@@ -56,7 +57,7 @@ def test_ids_are_right(name: str, index: str) -> None:
     view = styles.build(name)
     frame = judge.draw(renderer(index), view)
     assert (frame.ids >= 0).mean() > 0.02
-    wrong, unexplained = judge.unexplained_ids(view, frame, reach(frame))
+    wrong, unexplained = rounding.unexplained_ids(view, frame, reach(frame))
     assert unexplained == 0
     assert wrong <= 2e-3 * frame.ids.size
 
@@ -66,7 +67,7 @@ def test_without_antialiasing_a_pixel_is_the_composite_at_its_centre(name: str, 
     view = styles.build(name)
     frame = judge.draw(renderer(index), view)
     overlay = judge.overlay_of(renderer(index), view, "none")
-    wrong, unexplained = judge.unexplained_colors(view, frame, overlay, reach(frame), STEPS[index])
+    wrong, unexplained = rounding.unexplained_colors(view, frame, overlay, reach(frame), STEPS[index])
     assert unexplained == 0
     assert wrong <= 4e-3 * frame.ids.size
 
@@ -76,7 +77,7 @@ def test_coverage_is_right_at_each_of_its_places(name: str, index: str) -> None:
     view = styles.build(name)
     frame = judge.draw(renderer(index), view)
     x0, y0, x1, y1 = crop = judge.busiest_crop(frame, WIDE_CROP)
-    expected = judge.coverage_of_samples(view, frame, crop)
+    expected = rounding.coverage_of_samples(view, frame, crop)
     got = judge.overlay_of(renderer(index), view, "coverage")[y0:y1, x0:x1]
     ground = np.isfinite(frame.depth[y0:y1, x0:x1])
     difference = np.abs(got - expected).max(axis=-1)[ground]
@@ -130,7 +131,7 @@ def rounded(view: View, quantum: float) -> Rounded:
 def test_rounding_explains_what_it_does_and_no_more(name: str) -> None:
     view = styles.build(name)
     quantum = 2.0**-9
-    wrong, unexplained = judge.unexplained_ids(view, rounded(view, quantum), QUANTA * quantum)
+    wrong, unexplained = rounding.unexplained_ids(view, rounded(view, quantum), QUANTA * quantum)
     assert wrong > 0
     assert unexplained == 0
-    assert judge.unexplained_ids(view, rounded(view, 10 * quantum), QUANTA * quantum)[1] > 10
+    assert rounding.unexplained_ids(view, rounded(view, 10 * quantum), QUANTA * quantum)[1] > 10
