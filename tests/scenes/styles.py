@@ -380,7 +380,7 @@ def odd_rings() -> list[list[FloatArray]]:
     """Nested rings, stars and bow ties that cross themselves, rings that overlap, touch and repeat."""
     bow_tie = np.array([(-60.0, 18.0), (-35.0, 40.0), (-35.0, 18.0), (-60.0, 40.0)])
     touching = np.array([(0.0, 18.0), (14.0, 28.0), (0.0, 38.0), (0.0, 18.0), (-14.0, 38.0), (-14.0, 22.0)])
-    box = np.array([(35.0, 15.0), (55.0, 15.0), (55.0, 35.0), (35.0, 35.0)])
+    box = np.array([(35.13, 14.84), (55.13, 14.84), (55.13, 34.84), (35.13, 34.84)])
     return [
         nested_rings(-50.0, -18.0, 24.0, 5),
         [star(0.0, -18.0, 24.0, 7)],
