@@ -47,6 +47,8 @@ RATIOS = {
     "P": Ratio("{preprocess_ms:.0f} ms ÷ radix sort {radix_sort_ms:.0f} ms", most=3.0),
     "bytes_per_segment": Ratio("{segments:,.0f} segments in {pieces:,.0f} pieces", most=32.0),
     "peak_memory": Ratio("{peak_bytes:,.0f} bytes ÷ input {input_bytes:,.0f} bytes", most=3.0),
+    "open": Ratio("{open_ms:.0f} ms ÷ preparing {prepare_ms:.0f} ms", most=0.1),
+    "levels_made": Ratio("{levels_ms:.0f} ms ÷ preparing {prepare_ms:.0f} ms"),
     "S": Ratio("{none_ms:.1f} ms ÷ floor {floor_ms:.1f} ms", most=5.0, worst=8.0),
     "S_levels": Ratio("{coverage_ms:.1f} ms ÷ floor {floor_ms:.1f} ms", most=5.0, worst=8.0),
     "AA": Ratio("{coverage_ms:.1f} ms ÷ {none_ms:.1f} ms", most=1.25),

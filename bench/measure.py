@@ -6,6 +6,7 @@ import os
 import platform
 import statistics
 import subprocess
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,6 +44,13 @@ def drawing(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str)
         return {f"{name}_ms": layers, f"{name}_ground_ms": ground}
 
     return measure
+
+
+def timed(action: Callable[[], object]) -> float:
+    """Milliseconds that an action takes."""
+    started = time.perf_counter()
+    action()
+    return 1000.0 * (time.perf_counter() - started)
 
 
 def floor(renderer: dg.Renderer) -> Measure:

@@ -45,6 +45,13 @@ PREPARED = {
     "P": "{P:.1f}",
     "bytes a segment": "{bytes_per_segment:.1f}",
 }
+FILES = {
+    "scene": "{scene}",
+    "prepare": "{prepare_ms:.0f} ms",
+    "save": "{save_ms:.0f} ms",
+    "open": "{open_ms:.0f} ms",
+    "levels of detail": "{levels_ms:.0f} ms",
+}
 MEMORY = {"peak ÷ input": "{peak_memory:.1f}", "quantum": "{quantum_mm:.1f} mm"}
 INDEX = {"index": "`{technique}`"}
 INDEXES = {
@@ -115,6 +122,7 @@ def extremes(results: Results) -> str:
         " by vertices",
     }
     tables = [
+        _table(_having(results, "open"), FILES),
         _table(_having(results, "scale"), SCALE),
         _table(_having(results, "opaque_stack"), STACKS),
         _table(_having(results, "S", "ring"), VIEWS),

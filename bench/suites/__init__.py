@@ -2,6 +2,7 @@
 
 prepare      P, bytes a segment: what does an index cost?
 views        S, S_levels, AA, levels: what does a picture cost, from everywhere?
+files        open, levels_made: what do opening a saved scene and levels of detail cost?
 memory       peak_memory: how much does preparing take beside the input?
 scale        scale: does a larger map cost more at the same view?
 indexes      bvh_grid: how much faster is the grid than the papers' trees?
@@ -15,7 +16,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import indexes, interior, layers, memory, prepare, ring, scale, stacks, views
+from . import files, indexes, interior, layers, memory, prepare, ring, scale, stacks, views
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "prepare": prepare.measure,
     "views": views.measure,
+    "files": files.measure,
     "memory": memory.measure,
     "scale": scale.measure,
     "indexes": indexes.measure,

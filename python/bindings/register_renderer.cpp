@@ -27,6 +27,14 @@ Antialias antialias_named(const std::string& name) {
     throw Error(ErrorKind::input, "there is no antialias '" + name + "'; choose none or coverage");
 }
 
+CoverageRule coverage_named(const std::string& name) {
+    if (name == "exact")
+        return CoverageRule::exact;
+    if (name == "thoeny")
+        return CoverageRule::thoeny;
+    throw Error(ErrorKind::input, "there is no coverage '" + name + "'; choose exact or thoeny");
+}
+
 BvhOptions bvh_options(const py::dict& given) {
     BvhOptions options;
     options.cells = given["cells"].cast<int>();
@@ -186,7 +194,7 @@ void register_renderer(py::module_& module) {
     py::class_<Renderer>(module, "Renderer")
         .def(py::init([](int width, int height, const std::string& antialias, double terrain_error,
                          uint64_t memory_limit, const std::string& backend, unsigned threads, int rectangle,
-                         const std::string& index, const py::dict& bvh) {
+                         const std::string& index, const py::dict& bvh, const std::string& coverage) {
                  RendererOptions options;
                  options.width = width;
                  options.height = height;
@@ -198,11 +206,12 @@ void register_renderer(py::module_& module) {
                  options.rectangle = rectangle;
                  options.index = index;
                  options.bvh = bvh_options(bvh);
+                 options.coverage = coverage_named(coverage);
                  return Renderer(options);
              }),
              py::arg("width"), py::arg("height"), py::arg("antialias"), py::arg("terrain_error"),
              py::arg("memory_limit"), py::arg("backend"), py::arg("threads"), py::arg("rectangle"),
-             py::arg("index"), py::arg("bvh"))
+             py::arg("index"), py::arg("bvh"), py::arg("coverage") = "exact")
         .def(
             "set_picture",
             [](Renderer& renderer, int width, int height, const std::string& antialias) {

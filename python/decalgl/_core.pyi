@@ -134,6 +134,7 @@ class Renderer:
         rectangle: int,
         index: str,
         bvh: dict[str, Any],
+        coverage: str = "exact",
     ) -> None: ...
     def set_picture(self, width: int, height: int, antialias: str) -> None: ...
     def preprocess(

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 ANTIALIAS = ("none", "coverage")
 PLANNED_ANTIALIAS = ("msaa", "ssaa", "fxaa")
+COVERAGES = ("exact", "thoeny")
 BACKENDS = ("auto", "egl", "osmesa")
 # At the horizon, and 45 degrees above it.
 SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))
@@ -58,6 +59,8 @@ class Renderer:
     threads: for preprocessing; None: all cores.
     tile: larger pictures are drawn in squares of this many pixels; None: chosen. The picture is the same.
     index: of static layers, "grid" (the faster one), "bvh", "thoeny" or a `BvhIndex`: see `decalgl.indexes`.
+    coverage: what antialias="coverage" is: "exact", the mean over each pixel's area, or "thoeny", an estimate for
+        lines after Thöny et al. 2018, with index "bvh" and "thoeny": see docs/techniques/static.md.
 
     Call everything but `preprocess`, `save` and `open` from one thread. A call that fails leaves the renderer usable.
     Raises InputError for arguments out of range, UnsupportedError for what this version does not draw.
@@ -73,9 +76,12 @@ class Renderer:
         threads: int | None = None,
         tile: int | None = None,
         index: str | BvhIndex = "grid",
+        coverage: str = "exact",
     ) -> None:
         if backend not in BACKENDS:
             raise InputError(f"There is no backend {backend!r}; choose 'auto', 'egl' or 'osmesa'.")
+        if coverage not in COVERAGES:
+            raise InputError(f"There is no coverage={coverage!r}; choose 'exact' or 'thoeny'.")
         width, height = _checked_picture(size)
         core_index, bvh = resolve_index(index)
         self._options = {
@@ -85,6 +91,7 @@ class Renderer:
             "threads": threads,
             "tile": tile,
             "index": index,
+            "coverage": coverage,
         }
         self.antialias = antialias
         self._core = _core.Renderer(
@@ -98,6 +105,7 @@ class Renderer:
             rectangle=_checked_count(tile, "tile", "pixels", LARGEST_SIDE),
             index=core_index,
             bvh=bvh.to_dict(),
+            coverage=coverage,
         )
         self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
@@ -200,7 +208,9 @@ class Renderer:
                 view_height=fitted.view_height or 0.0,
             )
         )
-        _warn_of_long_walks(report, COVERAGE_SAMPLES if self.antialias == "coverage" else 1)
+        # The other indexes draw one sample after the other.
+        sampled = self.antialias == "coverage" and self._options["index"] == "grid"
+        _warn_of_long_walks(report, COVERAGE_SAMPLES if sampled else 1)
         self._updated_layers = self._prepared_layers
         return report
 
@@ -224,6 +234,7 @@ DEFAULT_OPTIONS = {
     "threads": None,
     "tile": None,
     "index": "grid",
+    "coverage": "exact",
 }
 
 

@@ -231,6 +231,10 @@ def variants(scene: dg.Scene, **options: Any) -> set[str]:
     return flags | {name.split("[")[0] for name in names}
 
 
+# Flags of the passes that filter a picture over the pixels' areas.
+AREA_PASSES = {"CLASSES", "CELLS", "POINTS", "FROM_LEVELS", "LEVELS"}
+
+
 def test_nothing_runs_that_the_scene_does_not_need() -> None:
     square, line = box(20, 20, 60, 60), LineString([(0, 0), (100, 100)])
     bare = flat_scene()
@@ -244,14 +248,14 @@ def test_nothing_runs_that_the_scene_does_not_need() -> None:
     opaque.add_polygons([square])
     needed = {"terrain", "compose", "static_decals", "OVERLAY", "RINGS"}
     assert variants(opaque) == needed | {"ONE_COLOR"}
-    assert variants(opaque, antialias="coverage", tile=512) == needed | {"COVERAGE", "LEVELS"}
+    assert variants(opaque, antialias="coverage", tile=512) == needed | AREA_PASSES
     colourful = flat_scene()
     colourful.add_polygons([square, line.buffer(1)], color=["red", "green"])
     assert variants(colourful) == needed
     clear = flat_scene()
     clear.add_lines([line], width=2, width_units="m", alpha=0.5)
     assert variants(clear) >= {"static_decals", "OVERLAY", "LINES", "TRANSLUCENT"}
-    assert not variants(clear) & {"RINGS", "COVERAGE", "IDS", "HOLES", "RAMP"}
+    assert not variants(clear) & ({"RINGS", "IDS", "HOLES", "RAMP"} | AREA_PASSES)
     holes = np.zeros((4, 4), np.float32)
     holes[1, 1] = np.nan
     assert "HOLES" in variants(dg.Scene(dg.Terrain(holes, 0, 100, 30, 30)))

@@ -94,9 +94,16 @@ def test_coverage_is_right_at_each_of_its_places(name: str, index: str) -> None:
     near = (np.isfinite(frame.depth) & (shorter_side(view, frame) < NEAR))[y0:y1, x0:x1]
     assert near.mean() > 0.2
     difference = np.abs(got - expected).max(axis=-1)[near]
-    # A place within a quantum of an edge may fall to either side, and few pixels have several of those.
-    assert (difference > STEPS[index] / 255).mean() <= 0.01
+    # Corners of short segments turn when their vertices are rounded.
     assert difference.max() <= 6.1 / 32
+    # A place within a quantum of an edge may fall to either side.
+    for angle in np.arange(0.0, 2.0 * np.pi, np.pi / 4):
+        if (difference > STEPS[index] / 255).mean() <= 0.005:
+            return
+        move = reach(frame) * np.array((np.cos(angle), np.sin(angle)))
+        expected = rounding.coverage_of_samples(view, frame, crop, (move[0], move[1]))
+        difference = np.minimum(difference, np.abs(got - expected).max(axis=-1)[near])
+    assert (difference > STEPS[index] / 255).mean() <= 0.005
 
 
 @pytest.mark.parametrize(("name", "index"), FILTERED)

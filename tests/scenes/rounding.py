@@ -128,8 +128,12 @@ def sample_offsets() -> FloatArray:
     return np.array(pairs, dtype=np.float64)
 
 
-def coverage_of_samples(view: View, frame: dg.Frame, crop: Crop) -> FloatArray:
+def coverage_of_samples(
+    view: View, frame: dg.Frame, crop: Crop, moved: tuple[float, float] = (0.0, 0.0)
+) -> FloatArray:
     """The reference's mean colour (h, w, 4) of the places where antialias="coverage" looks, on the pixels' planes.
+
+    moved: by how many metres, as rounding may move the map.
 
     What differs from it is a wrong answer at some place, whereas the mean over the whole area differs from it by what
     so few places can tell.
@@ -140,7 +144,7 @@ def coverage_of_samples(view: View, frame: dg.Frame, crop: Crop) -> FloatArray:
     total = np.zeros((len(surface.depth), 4))
     offsets = sample_offsets()
     for x, y in offsets:
-        there = dataclasses.replace(surface, world=surface.world + x * right - y * down)
+        there = dataclasses.replace(surface, world=surface.world + x * right - y * down + (*moved, 0.0))
         total += composite_of(view, view.scene, there)
     return (total / len(offsets)).reshape(y1 - y0, x1 - x0, 4)
 

@@ -90,8 +90,12 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     request_ = request;
     tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
                           request.terrain_error);
-    view_ = {request.width, request.height, scene_->positions, request.antialias,
-             widest_pixel(tiles_, scene_->terrain, request.camera, request.height)};
+    view_ = {request.width,
+             request.height,
+             scene_->positions,
+             request.antialias,
+             widest_pixel(tiles_, scene_->terrain, request.camera, request.height),
+             options_.coverage};
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     choose_rectangles();
@@ -128,17 +132,27 @@ void Pipeline::make_targets() {
     const int width = rectangles_.front().width;
     const int height = rectangles_.front().height;
     const bool has_overlay = !techniques_.empty();
+    const bool has_depth = std::any_of(techniques_.begin(), techniques_.end(),
+                                       [&](const auto& technique) { return technique->needs_depth(view_); });
     const bool fits = picture_ && gbuffer_.width() == width && gbuffer_.height() == height &&
-                      static_cast<bool>(overlay_) == has_overlay;
+                      static_cast<bool>(overlay_) == has_overlay &&
+                      static_cast<bool>(overlay_depth_) == has_depth;
     if (fits)
         return;
     gbuffer_ = GBuffer();
     overlay_ = gl::Texture2D();
+    overlay_depth_ = gl::Texture2D();
     picture_ = gl::Texture2D();
     gbuffer_ = GBuffer(width, height, memory_);
     if (has_overlay) {
         overlay_ = gl::Texture2D::create(memory_, "frame: overlay", GL_RGBA8, width, height);
-        overlay_framebuffer_ = gl::Framebuffer::create("overlay", {{GL_COLOR_ATTACHMENT0, &overlay_}});
+        std::vector<gl::Attachment> attachments{{GL_COLOR_ATTACHMENT0, &overlay_}};
+        if (has_depth) {
+            overlay_depth_ =
+                gl::Texture2D::create(memory_, "frame: overlay", GL_DEPTH_COMPONENT32F, width, height);
+            attachments.push_back({GL_DEPTH_ATTACHMENT, &overlay_depth_});
+        }
+        overlay_framebuffer_ = gl::Framebuffer::create("overlay", attachments);
     }
     picture_ = gl::Texture2D::create(memory_, "frame: picture", GL_RGBA8, width, height);
     picture_framebuffer_ = gl::Framebuffer::create("picture", {{GL_COLOR_ATTACHMENT0, &picture_}});

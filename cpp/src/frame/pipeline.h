@@ -75,6 +75,7 @@ private:
     GBuffer gbuffer_;
     const void* drawn_in_gbuffer_ = nullptr;  // the rectangle it holds, when there is just one
     gl::Texture2D overlay_;
+    gl::Texture2D overlay_depth_;  // for techniques that need it
     gl::Framebuffer overlay_framebuffer_;
     gl::Texture2D picture_;
     gl::Framebuffer picture_framebuffer_;

@@ -32,6 +32,11 @@ void require_options(const RendererOptions& options) {
         throw Error(ErrorKind::input, "rectangle must be zero or more pixels");
     if (options.index != "grid" && options.index != "bvh")
         throw Error(ErrorKind::input, "there is no index '" + options.index + "'; choose grid or bvh");
+    if (options.coverage == CoverageRule::thoeny && options.index == "grid")
+        throw Error(
+            ErrorKind::unsupported,
+            "coverage 'thoeny' is not drawn with index 'grid'; use index 'bvh' or 'thoeny', or coverage "
+            "'exact'");
     require_in_range("cells", options.bvh.cells, 1, 4096);
     require_in_range("leaf_capacity", options.bvh.leaf_capacity, 1, 1024);
     require_in_range("depth_limit", options.bvh.depth_limit, 0, 16);

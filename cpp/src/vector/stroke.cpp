@@ -101,8 +101,8 @@ void validate(const Stroke& stroke, size_t features, const std::string& layer) {
         refuse(layer, "the widest that a stroke may become must be a length in metres");
     require_places(stroke.style_of, features, stroke.styles.size(), layer);
     for (const StrokeStyle& style : stroke.styles) {
-        if (!(style.miter_limit >= 0.0 && style.miter_limit <= 180.0))
-            refuse(layer, "a miter limit is an angle from 0 to 180 degrees");
+        if (!(style.miter_limit >= 1.0 && style.miter_limit <= 180.0))
+            refuse(layer, "a miter limit is an angle from 1 to 180 degrees");
         validate(style.pattern, layer);
         validate(style.bands, layer);
     }

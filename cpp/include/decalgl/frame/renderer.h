@@ -29,6 +29,7 @@ struct RendererOptions {
     int rectangle = 0;             // largest side, in pixels, drawn at once; 0: chosen
     std::string index = "grid";    // of static layers: "grid", or "bvh" for the published structures
     BvhOptions bvh;
+    CoverageRule coverage = CoverageRule::exact;  // thoeny: of lines, with index "bvh"
 };
 
 class Renderer {

@@ -81,6 +81,9 @@ public:
 };
 
 enum class Antialias { none, coverage };
+// What antialias coverage is: the mean over the pixel's area, or what Thöny et al. 2018, section 3.5, estimate
+// for lines.
+enum class CoverageRule { exact, thoeny };
 
 // Where the camera looks; the uniform block of every pass is bound already (shaders/shared/view_block.h).
 struct View {
@@ -89,6 +92,7 @@ struct View {
     PositionGrid positions;
     Antialias antialias = Antialias::none;
     double widest_pixel = 0.0;  // metres that the farthest pixel is wide, seen head-on
+    CoverageRule coverage = CoverageRule::exact;
 };
 
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y
@@ -118,6 +122,8 @@ public:
                                                  const MemoryAccount& memory) const = 0;
     virtual void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) = 0;
     virtual UpdateReport update(const View& view) = 0;
+    // Whether `draw` needs a depth attachment for itself, with whatever values.
+    virtual bool needs_depth(const View&) const { return false; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;
     // Writes 1 + id of the topmost feature at each pixel's centre, 0 where there is none.

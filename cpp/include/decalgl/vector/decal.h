@@ -22,13 +22,14 @@ inline bool operator==(FeatureReference a, FeatureReference b) {
     return a.layer == b.layer && a.feature == b.feature;
 }
 
-enum class DecalRole : uint32_t { fill, stroke, casing };
+// A clip is not drawn: it cuts the next decal off. Techniques add clips where they need them.
+enum class DecalRole : uint32_t { fill, stroke, casing, clip };
 
 struct Decal {
     FeatureReference feature;
     DecalRole role = DecalRole::fill;
 
-    bool is_stroke() const { return role != DecalRole::fill; }
+    bool is_stroke() const { return role == DecalRole::stroke || role == DecalRole::casing; }
 };
 static_assert(sizeof(Decal) == 12, "kept on disk as it is");
 

@@ -1,22 +1,41 @@
 // The buffers of the BVH index, after figure 4.2 of Zechmeister 2020. Read by C++ and GLSL alike.
 //
-//     cells       first node, first object           of each cell, and one more that ends the last
-//     nodes       box                                cell by cell: a complete binary tree, root first
+//     cells         first node, first object         of each cell, and one more that ends the last
+//     nodes         box                              cell by cell: a complete binary tree, root first
 //
-//     segments    vertex, vertex                     lines: the objects of the cells
-//     vertices    x, y                               of lines or rings, in quanta of the lattice
-//     owners      slot                               lines: the line of each vertex
+//     segments      vertex, vertex                   strokes: the objects of the cells
+//     vertices      x, y                             of strokes, in quanta of the lattice
+//     owners        slot (, phase)                   the stroke of each vertex; where its pattern has come to
 //
-//     exteriors   subtree, slot, first, count        polygons: the objects of the cells
-//     interiors   subtree                            of the other rings, cell by cell
-//     quads       box                                nodes of all quad-trees; children are four in a row
-//     quad_links  kind | count << 2, first           first child, or the leaf's segments
-//     leaf_edges  vertex, vertex, first row, end row the ring's own edges, and closing ones
+//     exteriors     subtree, slot, first, count      fills: the objects of the cells
+//     interiors     subtree                          of the other rings, cell by cell
+//     ring_vertices x, y
+//     quads         box                              nodes of all quad-trees; children are four in a row
+//     quad_links    kind | count << 2, first         first child, or the leaf's segments
+//     leaf_edges    vertex, vertex, first row, end   the ring's own edges, and closing ones
 //
-//     styles      colour bytes, half width           of each slot, topmost first
+//     objects       place, exterior                  groups with both: what the objects are (STROKE_OBJECT)
+//     styles        colour, half width, look, 0      of each slot, topmost first; the first two where all is plain
+//     looks         see below                        what slots share
 //
 // A box is min x, min y, max x, max y and holds its border. Lattice points are the only places there are: a
 // pixel's position is rounded to the nearest, so boxes side by side share no point and leave none out.
+//
+// Where strokes are more than round, their vertices come in chains with a guard at either end, so that the
+// vertices before and after a segment are next to its own: those of a closed line once more from its other
+// end, and the end itself of an open one, which makes a cap there.
+//
+//     open     0 0 1 2 2         closed   2 0 1 2 0 1
+//
+// A look of a stroke is a header, its pattern's marks and its bands, a texel each:
+//
+//     kinds and counts, cosine of the miter limit, period, 0
+//     begin, end, begin width, end width
+//     reach, colour, 0, 0
+//
+// A look of a fill is a header with the number of sets of hatch lines, and two texels for each set: what a
+// quantum to the right and one upwards add to the phase, 64 bits each (high word first), and then the phase at
+// the lattice's origin and the phase up to which the hatch is on, 32 bits each. A whole turn is a spacing.
 #ifndef DECALGL_BVH_LAYOUT_H
 #define DECALGL_BVH_LAYOUT_H
 
@@ -32,5 +51,22 @@
 #define NO_SUBTREE 0xFFFFFFFFu
 // The first vertex of an edge that closes a leaf along its left border.
 #define CLOSING_EDGE 0xFFFFFFFFu
+// The slot of an exterior without a fill; the exterior of a stroke whose feature holds nothing of the cell.
+#define NO_SLOT 0xFFFFFFFFu
+#define NO_EXTERIOR 0xFFFFFFFFu
+
+// An object that is a segment, in a group with fills.
+#define STROKE_OBJECT 0x80000000u
+// A vertex of a segment where the stroke goes on without a corner or a cap.
+#define PLAIN_END 0x80000000u
+
+// The first word of a stroke's look.
+#define LOOK_CORNER_SHIFT 0
+#define LOOK_CAP_SHIFT 2
+#define LOOK_SLOPE_SHIFT 4
+#define LOOK_KIND_MASK 3u
+#define LOOK_MARKS_SHIFT 8
+#define LOOK_BANDS_SHIFT 16
+#define LOOK_COUNT_MASK 255u
 
 #endif

@@ -1,6 +1,7 @@
-// Polygons: whether an exterior of a cell, less its interiors, holds a point (quad_trees.h, polygon_group.h).
+// Fills: whether an exterior of a cell, less its interiors, holds a point (quad_trees.h, fill_group.h).
 #include "technique/static_bvh/tree.glsl"
 
+uniform isamplerBuffer bvh_ring_vertices;
 uniform usamplerBuffer bvh_exteriors;
 uniform usamplerBuffer bvh_interiors;
 uniform isamplerBuffer bvh_quads;
@@ -9,8 +10,8 @@ uniform isamplerBuffer bvh_leaf_edges;
 
 // An upward edge that owns the point's row, to the left of the point or through it.
 bool crosses(int a, int b, ivec2 point) {
-    ivec2 from = texelFetch(bvh_vertices, a).rg;
-    ivec2 to = texelFetch(bvh_vertices, b).rg;
+    ivec2 from = texelFetch(bvh_ring_vertices, a).rg;
+    ivec2 to = texelFetch(bvh_ring_vertices, b).rg;
     return wide_cross(point - from, to - from).high >= 0;
 }
 
@@ -44,3 +45,25 @@ bool exterior_holds(uvec4 exterior, ivec2 point) {
         inside = inside != ring_holds(texelFetch(bvh_interiors, int(i)).r, point);
     return inside;
 }
+
+#ifdef HATCHES
+// The phase, of which a whole turn is 2^32, that `count` steps of 64 bits lead to.
+uint turned(uvec2 step, uint count) {
+    uint high, low;
+    umulExtended(step.y, count, high, low);
+    return step.x * count + high;
+}
+
+// Whether the lines of a fill's hatch, if it has one, take in a point.
+bool hatch_holds(int look, ivec2 point) {
+    int sets = int(texelFetch(bvh_looks, look).r);
+    bool inside = sets == 0;
+    for (int i = 0; i < sets; ++i) {
+        uvec4 steps = texelFetch(bvh_looks, look + 1 + 2 * i);
+        uvec2 phases = texelFetch(bvh_looks, look + 2 + 2 * i).rg;
+        uint phase = phases.x + turned(steps.xy, uint(point.x)) + turned(steps.zw, uint(point.y));
+        inside = inside || min(phase, ~phase + 1u) <= phases.y;
+    }
+    return inside;
+}
+#endif

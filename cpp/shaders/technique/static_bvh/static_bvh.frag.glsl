@@ -4,114 +4,77 @@
 //     pixel ─▶ map position ─▶ cell ─▶ its tree, without a stack: down into boxes that hold the point,
 //     else to the right; at a leaf a segment, or a ring's subtree; front to back until nothing shows behind
 //
-// RINGS          a group of polygons, else of lines
+// RINGS          a group of fills, else of strokes
+// BOTH           a group of fills and strokes, with INSET or OFFSET for strokes on one side of their rings
+// CORNERS        strokes are more than round; with PATTERNS, BANDS or SLOPES as some of them ask for
+// HATCHES        some fills are of parallel lines
 // UNSORTED       segments lie along a Hilbert curve: the walk goes on to the end
 // NEAREST        the nearest line that covers the point is the only one seen
-// COVERAGE       the mean of 32 points of the pixel's area, each walked by itself
+// SAMPLE         one of the 32 points of the pixel's area, else its centre
+// THOENY         lines by how much of the pixel they cover
 // IDS            writes 1 + slot of the topmost feature at the centre, nothing where there is none
 #include "shared/ray.glsl"
 #include "technique/static_bvh/tree.glsl"
-#ifdef RINGS
+#if defined(RINGS) || defined(BOTH)
 #include "technique/static_bvh/quad_trees.glsl"
+#endif
+// A file is included where it is first asked for, whatever flags surround it there.
+#ifndef RINGS
+#include "technique/static_bvh/candidate.glsl"
+#ifdef CORNERS
+#include "technique/static_bvh/styled_strokes.glsl"
 #else
 #include "technique/static_bvh/strokes.glsl"
 #endif
+#endif
 
 uniform usampler2D position_texture;
-#ifdef COVERAGE
-#include "shared/sample_offsets.glsl"
+uniform int first_row;  // of the strip that is drawn
+#if defined(SAMPLE) || defined(SLOPES) || defined(THOENY)
 uniform sampler2D surface_texture;
 #endif
-
-const uint no_slot = 0xFFFFFFFFu;
-
-// What has been found so far. In draw order, `slot` is the last feature added to the colour; else the one to
-// be shown.
-struct Found {
-    vec4 sum;
-    uint slot;
-    float distance2;
-    bool done;
-};
-
-void add_color(inout Found found, uint slot) {
-    found.slot = slot;
-#ifdef IDS
-    found.done = true;
+#ifdef SAMPLE
+#include "shared/sample_offsets.glsl"
+uniform int sample_index;
+#endif
+#ifdef BOTH
+uniform usamplerBuffer bvh_objects;
+#endif
+#ifdef THOENY
+#include "technique/static_bvh/thoeny_walk.glsl"
 #else
-    vec4 straight = color_of(slot);
-    found.sum += (1.0 - found.sum.a) * vec4(straight.rgb * straight.a, straight.a);
-    found.done = found.sum.a >= 0.999;
+#include "technique/static_bvh/walk.glsl"
 #endif
-}
-
-// A leaf of the cell's tree whose box holds the point.
-void visit(inout Found found, int object, ivec2 point) {
-#if defined(RINGS)
-    uvec4 exterior = texelFetch(bvh_exteriors, object);
-    if (exterior_holds(exterior, point)) add_color(found, exterior.y);
-#else
-    Candidate line = candidate(object, point);
-    bool covers = line.distance2 < out_of_reach;
-#if defined(NEAREST)
-    bool ties = line.distance2 == found.distance2 && line.slot < found.slot;
-    if (covers && (line.distance2 < found.distance2 || ties)) {
-        found.slot = line.slot;
-        found.distance2 = line.distance2;
-    }
-#elif defined(UNSORTED)
-    if (covers) found.slot = min(found.slot, line.slot);
-#else
-    // The segments of a line follow each other, and it covers a point once.
-    if (covers && line.slot != found.slot) add_color(found, line.slot);
-#endif
-#endif
-}
-
-Found walk(ivec2 point) {
-    Found found = Found(vec4(0.0), no_slot, 1e38, false);
-    Tree tree = tree_at(point);
-    uint end = tree.first_leaf + tree.objects;
-    uint node = tree.objects > 0u ? 1u : 0u;
-    // What lies past the last object's leaf is empty and not stored.
-    while (node != 0u && node < end && !found.done) {
-        bool inside = holds(texelFetch(bvh_nodes, tree.first_node + int(node) - 1), point);
-        bool is_leaf = node >= tree.first_leaf;
-        if (inside && is_leaf) visit(found, tree.first_object + int(node - tree.first_leaf), point);
-        node = inside && !is_leaf ? 2u * node : next_right(node);
-    }
-#if !defined(RINGS) && (defined(NEAREST) || defined(UNSORTED))
-    if (found.slot != no_slot) add_color(found, found.slot);
-#endif
-    return found;
-}
 
 #ifdef IDS
 uniform uint first_slot;
 layout(location = 0) out uint id;
-
-void main() {
-    Position position = unpack_position(texelFetch(position_texture, ivec2(gl_FragCoord.xy), 0));
-    if (is_sky(position)) discard;
-    Found found = walk(lattice_point(position, vec2(0.0)));
-    if (found.slot == no_slot) discard;
-    id = first_slot + found.slot + 1u;
-}
 #else
 layout(location = 0) out vec4 color;
+#endif
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 pixel = ivec2(gl_FragCoord.xy) + ivec2(0, first_row);
     Position position = unpack_position(texelFetch(position_texture, pixel, 0));
-    color = vec4(0.0);
-    if (is_sky(position)) return;
-#ifdef COVERAGE
+    if (is_sky(position)) discard;
+#if defined(SAMPLE) || defined(SLOPES) || defined(THOENY)
     vec4 surface = texelFetch(surface_texture, pixel, 0);
-    mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
-    for (int i = 0; i < sample_count; ++i)
-        color += walk(lattice_point(position, foot * sample_offsets[i])).sum / float(sample_count);
+#endif
+#ifdef SLOPES
+    gradient = surface.xy;
+#endif
+#if defined(SAMPLE) || defined(THOENY)
+    mat2 foot = footprint(pixel_from_centre() + vec2(0.0, first_row), surface.xy, surface.z);
+#endif
+#if defined(THOENY)
+    color = lines_at(lattice_point(position, vec2(0.0)), quanta_per_metre * foot);
+#elif defined(IDS)
+    Found found = walk(lattice_point(position, vec2(0.0)));
+    if (found.seen == no_slot) discard;
+    id = first_slot + found.seen + 1u;
+#elif defined(SAMPLE)
+    color = walk(lattice_point(position, foot * sample_offsets[sample_index])).sum;
 #else
     color = walk(lattice_point(position, vec2(0.0))).sum;
 #endif
 }
-#endif

@@ -6,8 +6,10 @@
 
 uniform usamplerBuffer bvh_cells;
 uniform isamplerBuffer bvh_nodes;
-uniform isamplerBuffer bvh_vertices;
-uniform usamplerBuffer bvh_styles;  // colour bytes, half width in quanta
+uniform usamplerBuffer bvh_styles;  // colour bytes, half width in quanta, look
+#if defined(CORNERS) || defined(HATCHES)
+uniform usamplerBuffer bvh_looks;
+#endif
 uniform ivec4 grid_box;
 uniform ivec2 grid_size;       // columns, rows
 uniform ivec2 cell_size;       // quanta
@@ -44,19 +46,17 @@ struct Tree {
     uint first_leaf;
 };
 
+Tree tree_in(ivec2 place) {
+    int cell = place.x + grid_size.x * place.y;
+    uvec2 start = texelFetch(bvh_cells, cell).rg;
+    uint objects = texelFetch(bvh_cells, cell + 1).g - start.y;
+    return Tree(int(start.x), int(start.y), objects, objects > 1u ? 2u << findMSB(objects - 1u) : 1u);
+}
+
 // Columns and rows are tested apart: as one number, a column past the end would be a cell of the next row.
 Tree tree_at(ivec2 point) {
-    Tree tree = Tree(0, 0, 0u, 1u);
-    if (holds(grid_box, point)) {
-        ivec2 place = (point - grid_box.xy) / cell_size;
-        int cell = place.x + grid_size.x * place.y;
-        uvec2 start = texelFetch(bvh_cells, cell).rg;
-        tree.first_node = int(start.x);
-        tree.first_object = int(start.y);
-        tree.objects = texelFetch(bvh_cells, cell + 1).g - start.y;
-        tree.first_leaf = tree.objects > 1u ? 2u << findMSB(tree.objects - 1u) : 1u;
-    }
-    return tree;
+    if (!holds(grid_box, point)) return Tree(0, 0, 0u, 1u);
+    return tree_in((point - grid_box.xy) / cell_size);
 }
 
 // The node after the subtree of `node`, 0 after the last.

@@ -29,9 +29,23 @@ struct Group {
     vec2 at;           // the pixel's centre, in the group's coordinates
     vec2 corner;       // from the cell's corner to the centre, in the group's units
     vec2 from;         // from the last word's point to the centre
+    vec2 before;       // from that of the word before it
     float half_width;  // of a line
     uint covered;      // samples
+#ifdef STYLES
+    bool clip;         // only cuts the next group off
+    vec2 last;         // the last word's point
+    Style style;
+    mat2 metric;
+    Pen pen;
+    Pen pen_before;    // the edge that comes next
+    float run;         // its length on the map
+#endif
 };
+
+#ifdef BANDS
+float shares[sample_count];  // at which the group's stroke covers each sample
+#endif
 
 Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     Group group;
@@ -41,9 +55,24 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     float scale = 1.0;
     group.half_width = 0.0;
 #ifdef LINES
+#ifdef STYLES
+    group.clip = (header & CLIP) != 0u;
+    group.style = style_of(group.slot, half_width_of(group.slot));
+    group.style.half_width *= width_factor(group.style);
+    group.metric = metric_of(group.style);
+    group.pen = lifted_pen;
+    group.last = vec2(-1.0);
+    scale = group.line ? group.style.scale : 1.0;
+    group.half_width = group.style.half_width;
+    foot = group.metric * foot;
+#else
     vec2 stroke = group.line ? stroke_of(header) : vec2(1.0, 0.0);
     scale = stroke.x;
     group.half_width = stroke.y;
+#endif
+#endif
+#ifdef BANDS
+    for (int i = 0; i < sample_count; ++i) shares[i] = group.covered != 0u ? 0.0 : not_covered;
 #endif
     group.foot = foot * scale;
     group.reach = 0.5 * (length(group.foot[0]) + length(group.foot[1]));
@@ -51,7 +80,7 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     // Rounded as what leads from the border's points is: not to be simplified.
     precise vec2 corner = group.at - bias;
     group.corner = corner;
-    group.from = vec2(0.0);
+    group.from = group.before = vec2(0.0);
     return group;
 }
 
@@ -65,6 +94,57 @@ uint alike_in_stroke(Group group, vec2 from, vec2 to) {
     if (apart > group.half_width + group.reach) return 0u;
     return apart + group.reach <= group.half_width ? all_samples : for_each;
 }
+
+#ifdef STYLES
+// How far a mitred corner reaches, in half widths.
+float longest_reach(Style style) {
+    return has(style, STYLE_MITER) ? inversesqrt(max(0.5 * (1.0 + style.miter_turn), 1e-4)) : 1.0;
+}
+
+// As above of the edge that comes next.
+uint alike_in_styled(Group group, vec2 from, vec2 to) {
+    vec2 along = from - to;
+    float run = length(along);
+    float t = dot(from, along) / max(run, 1e-6);
+    float past = t - clamp(t, 0.0, run);
+    float across = abs(from.x * along.y - from.y * along.x) / max(run, 1e-6);
+    float apart = run > 0.0 ? sqrt(across * across + past * past) : length(from);
+    if (apart > group.half_width * longest_reach(group.style) + group.reach) return 0u;
+    bool beside = abs(past) == 0.0 && t >= group.reach && t + group.reach <= run;
+    bool even = !has(group.style, STYLE_PATTERN | STYLE_BANDS);
+    return even && beside && across + group.reach <= group.half_width ? all_samples : for_each;
+}
+
+// Reads a stroke's next point, and says whether its edge decides for all samples alike.
+uint next_alike(inout Group group, uint word, vec2 from, vec2 to) {
+    vec2 point = point_of(word);
+    bool starts = starts_edge(word);
+    if (starts) {
+        if (point != group.last) group.pen = lifted_pen;
+        group.pen.awaits_phase = has(group.style, STYLE_PATTERN);
+    }
+    group.run = starts ? 0.0 : distance(point, group.last);
+    group.last = point;
+    group.pen_before = group.pen;
+    if (!starts) move_on(group.pen, group.style, from, to, group.run);
+    bool joined = has(group.style, STYLE_JOINED);
+    return starts && joined ? 0u : alike_in_styled(group, from, to);
+}
+
+uint styled_mask(Group group, vec2 from, vec2 to) {
+    uint mask = 0u;
+    int i = 0;
+    do {
+        vec2 step = group.foot * sample_offsets[i];
+        float share = stroke_share(group.style, group.pen_before, from + step, to + step, group.run);
+        mask |= uint(share <= 1.0) << i;
+#ifdef BANDS
+        shares[i] = min(shares[i], share);
+#endif
+    } while (++i < sample_count);
+    return mask;
+}
+#endif
 
 // Samples inside the stroke: distances along and across the edge are affine in the sample's place.
 uint stroke_mask(Group group, vec2 from, vec2 to) {
@@ -133,6 +213,29 @@ uint crossing_mask(Crossing crossing) {
     return mask;
 }
 
+// Reads the group's next point, and says whether the edge to it decides for all samples alike.
+uint read_point(inout Group group, uint word) {
+#ifdef PATTERNS
+    if (group.pen.awaits_phase) {
+        group.pen.periods = float(word) / float(PHASE_ONE);
+        group.pen.awaits_phase = false;
+        return 0u;
+    }
+#endif
+    vec2 to = group.at - point_of(word);
+#ifdef STYLES
+    if (group.line) to = group.metric * to;
+#endif
+    group.before = starts_edge(word) ? to : group.from;
+    group.from = to;
+#ifdef STYLES
+    if (group.line) return next_alike(group, word, group.before, to);
+#else
+    if (group.line) return alike_in_stroke(group, group.before, to);
+#endif
+    return starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, group.before, to));
+}
+
 // Front-to-back composition of masks. `open`: samples that still see something behind what was added.
 struct Samples {
     uint open;
@@ -159,6 +262,39 @@ void add_layer(inout Samples samples, uint mask, vec4 straight) {
     samples.sum += weight * vec4(straight.rgb, 1.0);
 }
 
+#ifdef STYLES
+// Composes the group that ends. `open`: the samples that it is not cut off from.
+void add_group(inout Samples samples, inout uint open, Group group, Cell cell, vec2 local, mat2 foot) {
+    if (group.clip) {
+        open = group.covered;
+        return;
+    }
+    uint mask = group.covered & open;
+    open = all_samples;
+#ifdef HATCHES
+    if (!group.line && has(group.style, STYLE_HATCH)) {
+        vec2 inside = vec2(cell.corner & (BUCKET_QUANTA - 1)) + local;
+        int i = 0;
+        do {
+            if (!fill_shows(group.style, cell.corner >> BUCKET_BITS, inside + foot * sample_offsets[i])) mask &= ~(1u << i);
+        } while (++i < sample_count);
+    }
+#endif
+    if (mask == 0u) return;
+    vec4 straight = color_of(group.slot);
+#ifdef BANDS
+    if (has(group.style, STYLE_BANDS)) {
+        int i = 0;
+        do {
+            add_layer(samples, mask & (1u << i), band_color(group.style, straight, shares[i]));
+        } while (++i < sample_count);
+        return;
+    }
+#endif
+    add_layer(samples, mask, straight);
+}
+#endif
+
 // Walks the list of a cell for the samples that lie in it. `local`: the pixel's centre in quanta from the cell's corner.
 // Most edges decide for all samples alike: the inner loop goes on to the next one that does not.
 vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
@@ -173,33 +309,35 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
     uint count = cell.entry & COUNT_ESCAPE;
     int end = count == COUNT_ESCAPE ? 0x7FFFFFFF : at + 4 * int(count);
     Group group = group_of(0u, bias, local, foot);
+#ifdef STYLES
+    uint open = all_samples;
+#endif
     bool ended = false;
     do {
         uint alike = all_samples;
-        vec2 from = vec2(0.0), to = vec2(0.0);
         do {
             uint word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
             ++at;
             if (is_header(word)) {
+#ifdef STYLES
+                add_group(samples, open, group, cell, local, foot);
+#else
                 if (group.covered != 0u) add_layer(samples, group.covered, color_of(group.slot));
+#endif
                 group = group_of(word, bias, local, foot);
                 ended = word == LIST_END || samples.open == 0u;
             } else {
-                to = group.at - point_of(word);
-                from = starts_edge(word) ? to : group.from;
-                group.from = to;
-                if (group.line) {
-                    alike = alike_in_stroke(group, from, to);
-                    if (alike != for_each) group.covered |= alike;
-                } else {
-                    alike = starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, from, to));
-                    if (alike != for_each) group.covered ^= alike;
-                }
+                alike = read_point(group, word);
+                if (alike != for_each) group.covered = group.line ? group.covered | alike : group.covered ^ alike;
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
-            if (group.line) group.covered |= stroke_mask(group, from, to);
-            else group.covered ^= crossing_mask(crossing_of(group, from, to));
+#ifdef STYLES
+            if (group.line) group.covered |= styled_mask(group, group.before, group.from);
+#else
+            if (group.line) group.covered |= stroke_mask(group, group.before, group.from);
+#endif
+            else group.covered ^= crossing_mask(crossing_of(group, group.before, group.from));
         }
     } while (!ended);
     return samples.sum;
@@ -245,13 +383,4 @@ vec4 composite_cells(LatticePosition centre, mat2 foot) {
         left &= ~inside;
     } while (left != 0u);
     return sum / float(sample_count);
-}
-
-vec4 composite_area(LatticePosition centre, mat2 foot) {
-#ifdef LEVELS
-    if (spans_texels(foot)) return mean_of_levels(centre, foot);
-#endif
-    float size = max(length(foot[0]), length(foot[1]));
-    if (size > most_cells_across * float(1 << cell_at(centre.quantum).bits)) return composite_points(centre, foot);
-    return composite_cells(centre, foot);
 }

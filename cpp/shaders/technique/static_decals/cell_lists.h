@@ -7,7 +7,7 @@
 //
 // A list is words of 32 bits, groups from the topmost feature to the lowest:
 //
-//     header   HEADER | COVERS | LINE | slot      slot: the feature's place in draw order, topmost first
+//     header   HEADER | COVERS | LINE | CLIP | slot      slot: the decal's place in draw order, topmost first
 //     point    MOVE | y << 15 | x                 an edge comes from the word before, unless MOVE is set
 //     end      LIST_END                           fills the last texel
 //
@@ -18,7 +18,7 @@
 // segments may lie as far around the cell as 15 bits go, which is at least MAX_RADIUS units.
 //
 // `COVERS`: for a polygon, the corner of the cell is inside; for a line, the stroke covers the whole cell and
-// no point follows.
+// no point follows. `CLIP`: the polygon is not drawn: the next group is, where it is inside of it.
 #ifndef DECALGL_CELL_LISTS_H
 #define DECALGL_CELL_LISTS_H
 
@@ -45,7 +45,8 @@
 #define HEADER 0x80000000u
 #define COVERS 0x40000000u
 #define LINE 0x20000000u
-#define SLOT_MASK 0x1FFFFFFFu
+#define CLIP 0x10000000u
+#define SLOT_MASK 0x0FFFFFFFu
 #define LIST_END 0x9FFFFFFFu
 #define MOVE 0x40000000u
 

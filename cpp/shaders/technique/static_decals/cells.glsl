@@ -81,13 +81,18 @@ bool is_line(uint header) {
 #endif
 }
 
-// Units per quantum, and the half width in units, of a line.
-#ifdef LINES
+// Quanta.
+float half_width_of(uint slot) {
+    return uintBitsToFloat(texelFetch(decal_styles, int(slot)).g);
+}
+
+// Units per quantum, and the half width in units, of a plain line.
+#if defined(LINES) && !defined(STYLES)
 vec2 stroke_of(uint header) {
 #ifdef ONE_WIDTH
     return vec2(line_scale, line_half_width);
 #else
-    float half_width = uintBitsToFloat(texelFetch(decal_styles, int(header & SLOT_MASK)).g);
+    float half_width = half_width_of(header & SLOT_MASK);
     int exponent;
     frexp(half_width * (1.0 / float(MAX_RADIUS)), exponent);
     float scale = exp2(-float(max(exponent, 0)));

@@ -5,35 +5,11 @@
 namespace decalgl::bvh {
 namespace {
 
-// Pixels are rounded to the lattice, and so is the half width in float32.
-constexpr double rounding = 1.0;
-
 int32_t ceiling_of_share(int64_t length, int64_t cells) {
     return static_cast<int32_t>((length + cells - 1) / cells);
 }
 
 }  // namespace
-
-Quadrilateral stroke_outline(LatticePoint a, LatticePoint b, double half_width) {
-    const double dx = double(b.x) - a.x;
-    const double dy = double(b.y) - a.y;
-    const double length = std::hypot(dx, dy);
-    const double ux = half_width * (length > 0.0 ? dx / length : 1.0);
-    const double uy = half_width * (length > 0.0 ? dy / length : 0.0);
-    return {{a.x - ux - uy, a.x - ux + uy, b.x + ux + uy, b.x + ux - uy},
-            {a.y - uy + ux, a.y - uy - ux, b.y + uy - ux, b.y + uy + ux}};
-}
-
-LatticeBox stroke_box(LatticePoint a, LatticePoint b, double half_width) {
-    const auto reach = static_cast<int64_t>(std::ceil(half_width + rounding));
-    const auto low = [&](int64_t p, int64_t q) {
-        return static_cast<int32_t>(std::max<int64_t>(std::min(p, q) - reach, INT32_MIN));
-    };
-    const auto high = [&](int64_t p, int64_t q) {
-        return static_cast<int32_t>(std::min<int64_t>(std::max(p, q) + reach, INT32_MAX));
-    };
-    return {low(a.x, b.x), low(a.y, b.y), high(a.x, b.x), high(a.y, b.y)};
-}
 
 DecalGrid DecalGrid::over(const LatticeBox& box, int32_t cells) {
     DecalGrid grid;

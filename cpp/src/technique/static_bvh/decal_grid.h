@@ -27,11 +27,8 @@ struct Quadrilateral {
     std::array<double, 4> y;
 };
 
-// The rectangle of a round-ended stroke: as long as the segment and a half width at either end.
-Quadrilateral stroke_outline(LatticePoint a, LatticePoint b, double half_width);
-
-// The box of a round-ended stroke.
-LatticeBox stroke_box(LatticePoint a, LatticePoint b, double half_width);
+// Pixels are rounded to the lattice, and so is the half width in float32.
+constexpr double rounding = 1.0;
 
 struct CellRange {
     int32_t first;

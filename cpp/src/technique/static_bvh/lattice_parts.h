@@ -1,12 +1,12 @@
-// Lines and rings on the lattice, in the order in which they are drawn.
+// Rings on the lattice, in the order in which they are drawn.
 //
-// A part keeps its vertices as a chain, so that neighbouring segments share them. One that leaves the lattice
-// is cut, segment by segment, and becomes pairs of vertices:
+// A ring keeps its vertices as a chain, so that neighbouring edges share them. One that leaves the lattice is
+// cut, edge by edge, and becomes pairs of vertices:
 //
-//     chain   0--1--2--3      segments 0-1 1-2 2-3, and 3-0 for a ring
-//     pairs   0--1  2--3      segments 0-1 2-3
+//     chain   0--1--2--3      edges 0-1 1-2 2-3 3-0
+//     pairs   0--1  2--3      edges 0-1 2-3
 //
-// Edges of rings left and right of the lattice are moved onto its borders, so that the rings stay closed.
+// Edges left and right of the lattice are moved onto its borders, so that the rings stay closed.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@
 namespace decalgl::bvh {
 
 struct LatticePart {
-    uint32_t slot;  // in the group, topmost first
-    bool is_first;  // of its feature
+    uint32_t polygon;  // in the group, topmost first
+    bool is_first;     // of its polygon
     bool is_pairs;
     uint32_t first_vertex;
     uint32_t vertex_count;
@@ -35,11 +35,9 @@ struct LatticeParts {
     std::vector<LatticePart> parts;
 };
 
-// Which features a group draws, topmost first; places within the input's layers.
-using Slots = std::vector<FeatureReference>;
-
-// The vertices are charged to `charge` and the list of parts to `working`. Throws Error(memory).
-LatticeParts to_lattice(const TechniqueInput& input, Span<const FeatureReference> slots,
+// The rings of the polygons, topmost first, which go by their places within the input's layers. The vertices are
+// charged to `charge` and the list of parts to `working`. Throws Error(memory).
+LatticeParts to_lattice(const TechniqueInput& input, Span<const FeatureReference> polygons,
                         const Lattice& lattice, MemoryCharge& charge, MemoryCharge& working);
 
 }  // namespace decalgl::bvh

@@ -20,17 +20,29 @@ struct CellStart {
     uint32_t object;
 };
 
-// Two places in a group's vertices, the lower left end first.
+// Two places in a group's vertices, the lower left end first; PLAIN_END may be set in either.
 struct Segment {
     uint32_t a;
     uint32_t b;
+
+    uint32_t first() const { return a & ~PLAIN_END; }
+    uint32_t second() const { return b & ~PLAIN_END; }
 };
 
 struct Exterior {
     uint32_t subtree;         // of the feature's first ring, or NO_SUBTREE
-    uint32_t slot;            // in the group
+    uint32_t slot;            // in the group, or NO_SLOT
     uint32_t first_interior;  // its other rings in this cell
     uint32_t interior_count;
+};
+
+// An object of a group of fills and strokes.
+struct Object {
+    uint32_t place;     // an exterior; with STROKE_OBJECT a segment
+    uint32_t exterior;  // of a segment: that of its feature in the same cell, or NO_EXTERIOR
+
+    bool is_stroke() const { return (place & STROKE_OBJECT) != 0; }
+    uint32_t segment() const { return place & ~STROKE_OBJECT; }
 };
 
 struct QuadLink {
@@ -51,11 +63,18 @@ struct LeafEdge {
 
 struct Style {
     std::array<uint8_t, 4> color;
-    float half_width;  // quanta; 0 for polygons
+    float half_width;  // quanta; of fills 0, of strokes without any width below 0
+    uint32_t look;     // where it begins
+    uint32_t unused;
 };
 
-static_assert(sizeof(LatticeBox) == 16 && sizeof(Exterior) == 16 && sizeof(LeafEdge) == 16, "RGBA32 texels");
-static_assert(sizeof(CellStart) == 8 && sizeof(Segment) == 8 && sizeof(QuadLink) == 8 && sizeof(Style) == 8,
+// A texel of the looks.
+using LookTexel = std::array<uint32_t, 4>;
+
+static_assert(sizeof(LatticeBox) == 16 && sizeof(Exterior) == 16 && sizeof(LeafEdge) == 16 &&
+                  sizeof(Style) == 16 && sizeof(LookTexel) == 16,
+              "RGBA32 texels");
+static_assert(sizeof(CellStart) == 8 && sizeof(Segment) == 8 && sizeof(QuadLink) == 8 && sizeof(Object) == 8,
               "RG32 texels");
 
 struct QuadTrees {
@@ -64,32 +83,59 @@ struct QuadTrees {
     LargeArray<LeafEdge> edges;
 };
 
+enum class GroupKind : uint8_t { fills, strokes, both };
+
+// What any stroke or fill of a group asks for; shaders leave out what none does.
+struct GroupNeeds {
+    bool translucency = false;
+    bool corners = false;  // or caps that are not round, or anything below
+    bool patterns = false;
+    bool bands = false;
+    bool slopes = false;
+    bool hatches = false;
+};
+
 struct DecalGroup {
-    FeatureKind kind = FeatureKind::lines;
+    GroupKind kind = GroupKind::strokes;
+    OutlineMode cut = OutlineMode::normal;
+    GroupNeeds needs;
     uint32_t first_slot = 0;  // of the whole index
     std::vector<Style> styles;
-    bool has_translucency = false;
-    float widest = 0.0F;  // half width of a line, quanta
+    std::vector<LookTexel> looks;
+    float widest = 0.0F;  // half width of a stroke, quanta
 
     DecalGrid grid;
     LargeArray<CellStart> cells;
     LargeArray<LatticeBox> nodes;
+    LargeArray<Object> objects;
+
     LargeArray<LatticePoint> vertices;
-
+    LargeArray<uint32_t> owners;  // a slot for each vertex; with patterns a slot and the bits of a phase
     LargeArray<Segment> segments;
-    LargeArray<uint32_t> owners;
 
+    LargeArray<LatticePoint> ring_vertices;
     LargeArray<Exterior> exteriors;
     LargeArray<uint32_t> interiors;
     QuadTrees quads;
 
     uint32_t objects_in(uint32_t cell) const { return cells[cell + 1].object - cells[cell].object; }
+    Object object(uint32_t index) const {
+        if (kind == GroupKind::both)
+            return objects[index];
+        return {kind == GroupKind::strokes ? index | STROKE_OBJECT : index, NO_EXTERIOR};
+    }
+    uint32_t owner(uint32_t vertex) const { return owners[needs.patterns ? 2 * size_t{vertex} : vertex]; }
+    float phase(uint32_t vertex) const;
+    uint32_t slot_of(Object object) const {
+        return object.is_stroke() ? owner(segments[object.segment()].first()) : exteriors[object.place].slot;
+    }
 };
 
 class PreparedBvh : public Prepared {
 public:
     PreparedCounts counts() const override;
     FeatureReference feature(uint32_t id) const override { return slots[id]; }
+    // Strokes with a slope correction are as wide as on level ground.
     std::vector<FeatureReference> query(double x, double y) const override;
     // Throws Error(unsupported): the structures are there to be compared with.
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
@@ -97,7 +143,8 @@ public:
     Lattice lattice;
     BvhOptions options;
     std::vector<DecalGroup> groups;       // bottom to top
-    std::vector<FeatureReference> slots;  // group by group, in each topmost first
+    std::vector<FeatureReference> slots;  // of decals: group by group, in each topmost first
+    uint64_t features = 0;
     uint64_t segments = 0;
     uint64_t pieces = 0;
     uint64_t longest_walk = 0;

@@ -26,9 +26,17 @@ inline bool holds(const DecalGroup& group, uint32_t node, LatticePoint point) {
         const LeafEdge& edge = quads.edges[i];
         if (point.y < edge.first_row || point.y >= edge.end_row)
             continue;
-        inside ^= edge.a == CLOSING_EDGE ||
-                  RingEdge(group.vertices[edge.a], group.vertices[edge.b]).crossing(point.y) <= point.x;
+        inside ^=
+            edge.a == CLOSING_EDGE ||
+            RingEdge(group.ring_vertices[edge.a], group.ring_vertices[edge.b]).crossing(point.y) <= point.x;
     }
+    return inside;
+}
+
+inline bool holds(const DecalGroup& group, const Exterior& exterior, LatticePoint point) {
+    bool inside = exterior.subtree != NO_SUBTREE && holds(group, exterior.subtree, point);
+    for (uint32_t i = 0; i < exterior.interior_count; ++i)
+        inside ^= holds(group, group.interiors[exterior.first_interior + i], point);
     return inside;
 }
 

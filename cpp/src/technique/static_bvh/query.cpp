@@ -1,53 +1,69 @@
 // What lies at a map position: the walks of static_bvh.frag.glsl on the CPU and to their end.
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "technique/static_bvh/complete_tree.h"
 #include "technique/static_bvh/prepared_bvh.h"
 #include "technique/static_bvh/quad_walk.h"
+#include "technique/static_bvh/stroke_cover.h"
 
 namespace decalgl::bvh {
 namespace {
 
-bool within_stroke(LatticePoint point, LatticePoint a, LatticePoint b, double half_width) {
-    const double dx = double(b.x) - a.x, dy = double(b.y) - a.y;
-    const double px = double(point.x) - a.x, py = double(point.y) - a.y;
-    const double length2 = dx * dx + dy * dy;
-    const double t = length2 > 0.0 ? std::clamp((px * dx + py * dy) / length2, 0.0, 1.0) : 0.0;
-    return std::hypot(px - t * dx, py - t * dy) <= half_width;
+// Where an object covers a point: a slot, and the place across its stroke.
+struct Cover {
+    uint32_t slot;
+    double share;
+};
+
+bool on_its_side(const DecalGroup& group, Object object, LatticePoint point) {
+    if (group.cut == OutlineMode::normal)
+        return true;
+    const bool inside =
+        object.exterior != NO_EXTERIOR && holds(group, group.exteriors[object.exterior], point);
+    return inside == (group.cut == OutlineMode::inset);
 }
 
-bool holds(const DecalGroup& group, const Exterior& exterior, LatticePoint point) {
-    bool inside = exterior.subtree != NO_SUBTREE && holds(group, exterior.subtree, point);
-    for (uint32_t i = 0; i < exterior.interior_count; ++i)
-        inside ^= holds(group, group.interiors[exterior.first_interior + i], point);
-    return inside;
+bool fill_holds(const DecalGroup& group, const Exterior& exterior, LatticePoint point) {
+    return holds(group, exterior, point) && hatch_holds(group, group.styles[exterior.slot].look, point);
+}
+
+std::vector<Cover> covers_of(const DecalGroup& group, LatticePoint point) {
+    std::vector<Cover> covers;
+    const CellStart start = group.cells[group.grid.cell_at(point)];
+    const uint32_t objects = group.objects_in(group.grid.cell_at(point));
+    const auto reached = [&](const LatticeBox& box) { return box.holds(point); };
+    traverse(group.nodes.data() + start.node, objects, reached, [&](uint32_t index) {
+        const Object object = group.object(start.object + index);
+        if (!object.is_stroke()) {
+            const Exterior& exterior = group.exteriors[object.place];
+            if (fill_holds(group, exterior, point))
+                covers.push_back({exterior.slot, 0.0});
+            return true;
+        }
+        const double share = stroke_share(group, object.segment(), point);
+        if (share <= 1.0 && on_its_side(group, object, point))
+            covers.push_back({group.slot_of(object), share});
+        return true;
+    });
+    return covers;
 }
 
 std::vector<uint32_t> slots_at(const DecalGroup& group, LatticePoint point) {
     std::vector<uint32_t> found;
     if (!group.grid.box.holds(point))
         return found;
-    const uint32_t cell = group.grid.cell_at(point);
-    const CellStart start = group.cells[cell];
-    const auto reached = [&](const LatticeBox& box) { return box.holds(point); };
-    traverse(group.nodes.data() + start.node, group.objects_in(cell), reached, [&](uint32_t object) {
-        if (group.kind == FeatureKind::polygons) {
-            const Exterior& exterior = group.exteriors[start.object + object];
-            if (holds(group, exterior, point))
-                found.push_back(exterior.slot);
-        } else {
-            const Segment segment = group.segments[start.object + object];
-            const uint32_t slot = group.owners[segment.a];
-            if (within_stroke(point, group.vertices[segment.a], group.vertices[segment.b],
-                              double{group.styles[slot].half_width}))
-                found.push_back(slot);
-        }
-        return true;
-    });
-    // Lines come segment by segment, along a curve even out of order.
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    std::vector<Cover> covers = covers_of(group, point);
+    // Strokes come segment by segment, along a curve even out of order.
+    std::sort(covers.begin(), covers.end(),
+              [](Cover a, Cover b) { return a.slot != b.slot ? a.slot < b.slot : a.share < b.share; });
+    uint32_t last = NO_SLOT;
+    for (const Cover& cover : covers) {
+        if (cover.slot != last && band_shows(group, cover.slot, cover.share))
+            found.push_back(cover.slot);
+        last = cover.slot;
+    }
     return found;
 }
 
@@ -59,9 +75,14 @@ std::vector<FeatureReference> PreparedBvh::query(double x, double y) const {
     if (!(std::abs(lattice_x) <= lattice_extent && std::abs(lattice_y) <= lattice_extent))
         return found;
     const LatticePoint point = lattice.nearest(x, y);
+    std::unordered_set<uint64_t> seen;
     for (size_t group = groups.size(); group-- > 0;)
-        for (const uint32_t slot : slots_at(groups[group], point))
-            found.push_back(slots[groups[group].first_slot + slot]);
+        for (const uint32_t slot : slots_at(groups[group], point)) {
+            // A feature may show more than one of its decals.
+            const FeatureReference feature = slots[groups[group].first_slot + slot];
+            if (seen.insert(uint64_t{feature.layer} << 32 | feature.feature).second)
+                found.push_back(feature);
+        }
     return found;
 }
 

@@ -1,5 +1,6 @@
 #include "technique/static_bvh/static_bvh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,6 +11,19 @@
 namespace decalgl {
 
 namespace {
+
+using bvh::GroupKind;
+
+constexpr int sample_count = 32;  // shared/sample_offsets.glsl
+constexpr int no_sample = -1;
+// Samples are drawn in strips of the picture, so that they take no more memory than this many pixels.
+constexpr int pixels_at_once = 1 << 19;
+
+// Whether lines are drawn by how much of a pixel they cover, and not by samples.
+bool by_coverage(const View& view, const bvh::DecalGroup& group) {
+    return view.antialias == Antialias::coverage && view.coverage == CoverageRule::thoeny &&
+           group.kind == GroupKind::strokes;
+}
 
 [[noreturn]] void refuse_files() {
     throw Error(ErrorKind::unsupported,
@@ -40,21 +54,30 @@ void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, const MemoryAcc
             buffers.push_back(
                 {name, gl::TextureBuffer::from(memory, account, format, Span(values.data(), values.size()))});
         };
+        const bool with_looks = group.needs.corners || group.needs.hatches;
         add("bvh_cells", "static_bvh: cells", GL_RG32UI, group.cells);
         add("bvh_nodes", "static_bvh: trees", GL_RGBA32I, group.nodes);
-        add("bvh_vertices", "static_bvh: vertices", GL_RG32I, group.vertices);
-        add("bvh_styles", "static_bvh: styles", GL_RG32UI, group.styles);
-        if (group.kind == FeatureKind::lines) {
+        add("bvh_styles", "static_bvh: styles", GL_RGBA32UI, group.styles);
+        if (with_looks)
+            add("bvh_looks", "static_bvh: styles", GL_RGBA32UI, group.looks);
+        if (group.kind != GroupKind::fills) {
+            add("bvh_vertices", "static_bvh: vertices", GL_RG32I, group.vertices);
             add("bvh_segments", "static_bvh: segments", GL_RG32UI, group.segments);
-            add("bvh_owners", "static_bvh: vertices", GL_R32UI, group.owners);
-        } else {
+            add("bvh_owners", "static_bvh: vertices", group.needs.patterns ? GL_RG32UI : GL_R32UI,
+                group.owners);
+        }
+        if (group.kind != GroupKind::strokes) {
+            add("bvh_ring_vertices", "static_bvh: vertices", GL_RG32I, group.ring_vertices);
             add("bvh_exteriors", "static_bvh: polygons", GL_RGBA32UI, group.exteriors);
             add("bvh_interiors", "static_bvh: polygons", GL_R32UI, group.interiors);
             add("bvh_quads", "static_bvh: quad-trees", GL_RGBA32I, group.quads.boxes);
             add("bvh_quad_links", "static_bvh: quad-trees", GL_RG32UI, group.quads.links);
             add("bvh_leaf_edges", "static_bvh: quad-trees", GL_RGBA32I, group.quads.edges);
         }
+        if (group.kind == GroupKind::both)
+            add("bvh_objects", "static_bvh: objects", GL_RG32UI, group.objects);
     }
+    memory_ = memory;
     no_vertices_ = gl::VertexArray::create();
 }
 
@@ -72,41 +95,112 @@ void StaticBvh::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLi
     const GLfloat nothing[] = {0.0F, 0.0F, 0.0F, 0.0F};
     glClearBufferfv(GL_COLOR, 0, nothing);
     glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (size_t group = 0; group < buffers_.size(); ++group) {
-        gl::Flags flags;
-        if (view.antialias == Antialias::coverage)
-            flags.insert("COVERAGE");
-        draw_group(group, std::move(flags), view, gbuffer, programs);
-    }
+    const bool in_samples =
+        std::any_of(prepared_->groups.begin(), prepared_->groups.end(),
+                    [&](const bvh::DecalGroup& group) { return !by_coverage(view, group); });
+    if (view.antialias == Antialias::coverage && in_samples)
+        draw_samples(view, gbuffer, programs);
+    else
+        draw_groups({}, {0, no_sample}, view, gbuffer, programs);
     glDisable(GL_BLEND);
 }
 
 void StaticBvh::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const GLuint nothing[] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    for (size_t group = 0; group < buffers_.size(); ++group)
-        draw_group(group, {"IDS"}, view, gbuffer, programs);
+    draw_groups({"IDS"}, {0, no_sample}, view, gbuffer, programs);
 }
 
-void StaticBvh::draw_group(size_t index, gl::Flags flags, const View& view, const GBufferView& gbuffer,
-                           gl::ProgramLibrary& programs) {
+// All groups for one sample of every pixel, over each other; then the next. So the mean is that of the
+// composite, also where edges of several groups meet.
+void StaticBvh::draw_samples(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+    GLint target = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+    const int width = gbuffer.position->width(), height = gbuffer.position->height();
+    const int rows = std::clamp(pixels_at_once / width, 1, height);
+    const gl::Texture2D sample =
+        gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, rows);
+    const gl::Texture2D sum = gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, rows);
+    const gl::Framebuffer one = gl::Framebuffer::create("sample", {{GL_COLOR_ATTACHMENT0, &sample}});
+    const gl::Framebuffer all = gl::Framebuffer::create("samples", {{GL_COLOR_ATTACHMENT0, &sum}});
+    const auto add = [&](const gl::Texture2D& from, int first_row, float share) {
+        gl::Program& program = programs.get("static_bvh_mean");
+        program.use();
+        program.set("samples", 0);
+        from.bind(0);
+        program.set("first_row", first_row);
+        program.set("share", share);
+        no_vertices_.bind();
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    };
+    for (int row = 0; row < height; row += rows) {
+        all.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
+        for (int i = 0; i < sample_count; ++i) {
+            one.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
+            one.bind();
+            draw_groups({"SAMPLE"}, {row, i}, view, gbuffer, programs);
+            all.bind();
+            glBlendFunc(GL_ONE, GL_ONE);
+            add(sample, 0, 1.0F / sample_count);
+        }
+        glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+        glViewport(0, row, width, std::min(rows, height - row));
+        add(sum, row, 1.0F);
+    }
+    glViewport(0, 0, width, height);
+}
+
+void StaticBvh::draw_groups(const gl::Flags& flags, Strip strip, const View& view, const GBufferView& gbuffer,
+                            gl::ProgramLibrary& programs) {
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    for (size_t group = 0; group < buffers_.size(); ++group)
+        draw_group(group, flags, strip, view, gbuffer, programs);
+}
+
+gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
+    gl::Flags flags;
+    const auto add_if = [&](bool wanted, const char* flag) {
+        if (wanted)
+            flags.insert(flag);
+    };
+    const bool is_line = group.kind == GroupKind::strokes;
+    const bool hilbert = prepared_->options.segment_order == SegmentOrder::hilbert;
+    const bool nearest = is_line && prepared_->options.composition == Composition::nearest;
+    add_if(group.kind == GroupKind::fills, "RINGS");
+    add_if(group.kind == GroupKind::both, "BOTH");
+    add_if(group.cut == OutlineMode::inset, "INSET");
+    add_if(group.cut == OutlineMode::offset, "OFFSET");
+    add_if(group.needs.corners, "CORNERS");
+    add_if(group.needs.patterns, "PATTERNS");
+    add_if(group.needs.bands, "BANDS");
+    add_if(group.needs.slopes, "SLOPES");
+    add_if(group.needs.hatches, "HATCHES");
+    add_if(nearest, "NEAREST");
+    add_if(is_line && !nearest && hilbert, "UNSORTED");
+    return flags;
+}
+
+void StaticBvh::draw_group(size_t index, gl::Flags flags, Strip strip, const View& view,
+                           const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const bvh::DecalGroup& group = prepared_->groups[index];
     const bvh::Lattice& lattice = prepared_->lattice;
-    if (group.kind == FeatureKind::polygons)
-        flags.insert("RINGS");
-    else if (prepared_->options.composition == Composition::nearest)
-        flags.insert("NEAREST");
-    else if (prepared_->options.segment_order == SegmentOrder::hilbert)
-        flags.insert("UNSORTED");
+    flags.merge(flags_of(group));
+    if (flags.count("IDS") == 0 && by_coverage(view, group)) {
+        flags.erase("SAMPLE");
+        flags.erase("UNSORTED");
+        flags.insert("THOENY");
+    }
     gl::Program& program = programs.get("static_bvh", flags);
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
-    if (flags.count("COVERAGE") != 0) {
+    if (flags.count("SAMPLE") + flags.count("THOENY") + flags.count("SLOPES") != 0) {
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
     }
+    program.set("first_row", strip.first_row);
+    if (flags.count("SAMPLE") != 0)
+        program.set("sample_index", strip.sample);
     int unit = 2;
     for (const NamedBuffer& each : buffers_[index]) {
         program.set(each.name, unit);

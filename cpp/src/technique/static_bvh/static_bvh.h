@@ -28,12 +28,23 @@ private:
         gl::TextureBuffer buffer;
     };
 
-    void draw_group(size_t group, gl::Flags flags, const View& view, const GBufferView& gbuffer,
+    // Rows of the picture, and which sample of its pixels.
+    struct Strip {
+        int first_row;
+        int sample;
+    };
+
+    void draw_samples(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void draw_groups(const gl::Flags& flags, Strip strip, const View& view, const GBufferView& gbuffer,
+                     gl::ProgramLibrary& programs);
+    void draw_group(size_t group, gl::Flags flags, Strip strip, const View& view, const GBufferView& gbuffer,
                     gl::ProgramLibrary& programs);
+    gl::Flags flags_of(const bvh::DecalGroup& group) const;
 
     std::shared_ptr<const bvh::PreparedBvh> prepared_;
     std::vector<std::vector<NamedBuffer>> buffers_;  // of each group
     gl::VertexArray no_vertices_;
+    MemoryAccount memory_;
 };
 
 }  // namespace decalgl

@@ -2,6 +2,7 @@
 
 #include "decalgl/core/parallel.h"
 #include "technique/static_bvh/complete_tree.h"
+#include "technique/static_bvh/looks.h"
 #include "technique/static_bvh/quad_walk.h"
 
 namespace decalgl::bvh {
@@ -19,14 +20,29 @@ uint64_t walk_through(const DecalGroup& group, const Exterior& exterior, const L
     return turns;
 }
 
+// The marks and bands of a stroke, and the rings that it is cut at.
+uint64_t walk_through(const DecalGroup& group, Object object, const LatticeBox& box) {
+    if (!object.is_stroke())
+        return walk_through(group, group.exteriors[object.place], box);
+    uint64_t turns = 0;
+    if (group.needs.patterns || group.needs.bands) {
+        const StrokeLook look = stroke_look(group, group.styles[group.slot_of(object)].look);
+        turns += look.mark_count + look.band_count;
+    }
+    if (group.cut != OutlineMode::normal && object.exterior != NO_EXTERIOR)
+        turns += walk_through(group, group.exteriors[object.exterior], box);
+    return turns;
+}
+
 // What a point would look at that is everywhere in a box at once.
 uint64_t walk_in(const DecalGroup& group, uint32_t cell, const LatticeBox& box) {
     const CellStart start = group.cells[cell];
     uint64_t below = 0;
+    const bool has_more = group.kind != GroupKind::strokes || group.needs.patterns || group.needs.bands;
     const auto reached = [&](const LatticeBox& node) { return node.meets(box); };
     const auto on_object = [&](uint32_t object) {
-        if (group.kind == FeatureKind::polygons)
-            below += walk_through(group, group.exteriors[start.object + object], box);
+        if (has_more)
+            below += walk_through(group, group.object(start.object + object), box);
         return true;
     };
     const uint32_t nodes =

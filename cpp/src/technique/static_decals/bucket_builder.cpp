@@ -40,10 +40,62 @@ void BucketBuilder::gather_stretch(const BucketReference& reference, const Latti
     const size_t edges = closes ? 1 : reference.count;
     for (size_t i = 0; i < edges; ++i)
         add_point(reference.first + i);
-    stretches_.push_back({reference.slot, first, points_.size() - 1});
+    stretches_.push_back({reference.slot, first, points_.size() - 1, {}});
     for (size_t i = first + 1; i < points_.size(); ++i)
         length_ += length_inside(points_[i - 1], points_[i]);
-    reach_ += static_cast<double>(edges) * static_cast<double>(features_.half_widths[reference.slot]);
+    reach_ += static_cast<double>(edges) * static_cast<double>(features_.shapes[reference.slot].half_width);
+}
+
+// The part of a feature that a vertex lies in.
+StrokePart part_with(const Features& table, size_t vertex) {
+    const int64_t* next =
+        std::upper_bound(table.part_offsets.begin(), table.part_offsets.end(), static_cast<int64_t>(vertex));
+    return {table.coordinates.data(), static_cast<size_t>(next[-1]), static_cast<size_t>(next[0]),
+            table.kind == FeatureKind::polygons};
+}
+
+// What is beyond the first and the last point of a stretch from one vertex to another.
+StrokeEnds BucketBuilder::ends_of(const StrokePart& part, size_t from, size_t to, const DecalShape& shape,
+                                  const LatticePoint& corner, const std::vector<double>& arcs) const {
+    StrokeEnds ends;
+    const auto point = [&](size_t vertex) {
+        const LatticePoint at = lattice_.nearest(part.vertices + 2 * vertex);
+        return LatticePoint{at.x - corner.x, at.y - corner.y};
+    };
+    const size_t before = part.before(from), after = part.after(to);
+    ends.begins = before == part.end;
+    ends.ends = after == part.end;
+    if (!ends.begins)
+        ends.before = point(before);
+    if (!ends.ends)
+        ends.after = point(after);
+    if (shape.periods_per_quantum > 0.0)
+        ends.periods = shape.first_period + arcs[from] / features_.grid->quantum * shape.periods_per_quantum;
+    return ends;
+}
+
+// As above for a joined stroke, whose points all differ from the one before.
+void BucketBuilder::gather_joined(const BucketReference& reference, const LatticePoint& corner) {
+    const DecalShape& shape = features_.shapes[reference.slot];
+    const StrokePart part = part_with(features_.features(reference.slot), reference.first);
+    const bool closes = reference.count == closing_edge;
+    const size_t from = closes ? part.end - 1 : reference.first - size_t{1};
+    const size_t to = closes ? reference.first : reference.first + reference.count - size_t{1};
+    const size_t first = points_.size();
+    const auto add_point = [&](size_t vertex) {
+        const LatticePoint at = lattice_.nearest(part.vertices + 2 * vertex);
+        const LatticePoint point{at.x - corner.x, at.y - corner.y};
+        if (points_.size() == first || !(points_.back() == point))
+            points_.push_back(point);
+    };
+    add_point(from);
+    for (size_t vertex = closes ? to : from + 1; vertex <= to; ++vertex)
+        add_point(vertex);
+    stretches_.push_back({reference.slot, first, points_.size() - 1,
+                          ends_of(part, from, to, shape, corner, features_.arcs_of(reference.slot))});
+    for (size_t i = first + 1; i < points_.size(); ++i)
+        length_ += length_inside(points_[i - 1], points_[i]);
+    reach_ += static_cast<double>(points_.size() - first) * static_cast<double>(shape.half_width);
 }
 
 void BucketBuilder::gather(uint32_t bucket, Span<const BucketReferences> runs) {
@@ -62,6 +114,8 @@ void BucketBuilder::gather(uint32_t bucket, Span<const BucketReferences> runs) {
                 prefetch(references[i + lookahead]);
             if (references[i].count == 0)
                 corners_.push_back(references[i].slot);
+            else if (features_.shapes[references[i].slot].is_joined)
+                gather_joined(references[i], corner);
             else
                 gather_stretch(references[i], corner);
         }
@@ -98,35 +152,69 @@ void BucketBuilder::build(uint32_t bucket, Span<const BucketReferences> runs, Ce
         uint32_t slot = begin < stretches_.size() ? stretches_[begin].slot : corners_[corner];
         if (corner < corners_.size())
             slot = std::min(slot, corners_[corner]);
-        size_t end = begin;
-        while (end < stretches_.size() && stretches_[end].slot == slot)
-            ++end;
-        const Span<const Stretch> stretches(stretches_.data() + begin, end - begin);
+        const Span<const Stretch> stretches = stretches_of(slot, begin);
+        begin += stretches.size();
         const bool corner_inside = corner < corners_.size() && corners_[corner] == slot;
         corner += corner_inside ? 1 : 0;
-        begin = end;
-        if (features_.features(slot).kind == FeatureKind::polygons)
+        if (features_.shapes[slot].is_clip) {
+            const Span<const Stretch> strokes = stretches_of(slot + 1, begin);
+            begin += strokes.size();
+            add_clipped(slot, stretches, corner_inside, strokes);
+        } else if (features_.shapes[slot].is_clipped) {
+            add_clipped(slot - 1, {}, false, stretches);
+        } else if (features_.shapes[slot].is_stroke) {
+            add_stroke(slot, stretches);
+        } else {
             add_polygon(slot, stretches, corner_inside);
-        else
-            add_line(slot, stretches);
+        }
     }
     lists_.finish(chunk);
 }
 
-void BucketBuilder::add_polygon(uint32_t slot, Span<const Stretch> stretches, bool corner_inside) {
-    rings_.begin(slot);
+// From `begin` on, those of a slot; they follow each other.
+Span<const BucketBuilder::Stretch> BucketBuilder::stretches_of(uint32_t slot, size_t begin) const {
+    size_t end = begin;
+    while (end < stretches_.size() && stretches_[end].slot == slot)
+        ++end;
+    return {stretches_.data() + begin, end - begin};
+}
+
+void BucketBuilder::add_rings(Span<const Stretch> stretches) {
     for (const Stretch& stretch : stretches)
         for (size_t i = stretch.first; i < stretch.last; ++i)
             rings_.add_edge(points_[i], points_[i + 1]);
+}
+
+void BucketBuilder::add_polygon(uint32_t slot, Span<const Stretch> stretches, bool corner_inside) {
+    rings_.begin(slot);
+    add_rings(stretches);
     rings_.finish(corner_inside);
 }
 
-void BucketBuilder::add_line(uint32_t slot, Span<const Stretch> stretches) {
-    lines_.begin(slot, features_.half_widths[slot]);
+void BucketBuilder::add_stroke(uint32_t slot, Span<const Stretch> stretches) {
+    strokes_.begin(slot, features_.shapes[slot], nullptr);
     for (const Stretch& stretch : stretches)
-        lines_.mark_covered_cells(points_of(stretch));
+        strokes_.mark_covered_cells(points_of(stretch));
     for (const Stretch& stretch : stretches)
-        lines_.add_edges(points_of(stretch));
+        strokes_.add_edges(points_of(stretch), stretch.ends);
+}
+
+// The rings are needed only where the stroke is, and the stroke only where they do not cut it off.
+void BucketBuilder::add_clipped(uint32_t clip, Span<const Stretch> rings, bool corner_inside,
+                                Span<const Stretch> strokes) {
+    const DecalShape& stroke = features_.shapes[clip + 1];
+    CellMask touched(lists_.cell_count(), 0);
+    strokes_.begin(clip + 1, stroke, nullptr);
+    for (const Stretch& stretch : strokes)
+        strokes_.mark_touched_cells(points_of(stretch), stretch.ends, touched);
+    rings_.begin_clip(clip, touched);
+    add_rings(rings);
+    const CellMask open = rings_.finish_clip(corner_inside, features_.shapes[clip].is_offset);
+    strokes_.begin(clip + 1, stroke, &open);
+    for (const Stretch& stretch : strokes)
+        strokes_.mark_covered_cells(points_of(stretch));
+    for (const Stretch& stretch : strokes)
+        strokes_.add_edges(points_of(stretch), stretch.ends);
 }
 
 }  // namespace decalgl

@@ -6,15 +6,16 @@
 
 #include "technique/static_decals/bucket_references.h"
 #include "technique/static_decals/cell_list_builder.h"
-#include "technique/static_decals/line_cells.h"
 #include "technique/static_decals/ring_cells.h"
+#include "technique/static_decals/stroke_cells.h"
+#include "technique/static_decals/stroke_part.h"
 
 namespace decalgl {
 
 class BucketBuilder {
 public:
     explicit BucketBuilder(const OrderedFeatures& features)
-        : features_(features), lattice_(*features.grid), rings_(lists_), lines_(lists_) {}
+        : features_(features), lattice_(*features.grid), rings_(lists_), strokes_(lists_) {}
 
     // Appends the lists of a bucket to the chunk. `runs` in draw order, sorted into buckets.
     void build(uint32_t bucket, Span<const BucketReferences> runs, CellChunk& chunk);
@@ -25,14 +26,22 @@ private:
         uint32_t slot;
         size_t first;
         size_t last;
+        StrokeEnds ends;  // of joined strokes
     };
 
     void gather(uint32_t bucket, Span<const BucketReferences> runs);
     void gather_stretch(const BucketReference& reference, const LatticePoint& corner);
+    void gather_joined(const BucketReference& reference, const LatticePoint& corner);
+    StrokeEnds ends_of(const StrokePart& part, size_t from, size_t to, const DecalShape& shape,
+                       const LatticePoint& corner, const std::vector<double>& arcs) const;
+    Span<const Stretch> stretches_of(uint32_t slot, size_t begin) const;
     void prefetch(const BucketReference& reference) const;
     int choose_level() const;
+    void add_rings(Span<const Stretch> stretches);
     void add_polygon(uint32_t slot, Span<const Stretch> stretches, bool corner_inside);
-    void add_line(uint32_t slot, Span<const Stretch> stretches);
+    void add_stroke(uint32_t slot, Span<const Stretch> stretches);
+    void add_clipped(uint32_t clip, Span<const Stretch> rings, bool corner_inside,
+                     Span<const Stretch> strokes);
     Span<const LatticePoint> points_of(const Stretch& stretch) const {
         return {points_.data() + stretch.first, stretch.last - stretch.first + 1};
     }
@@ -41,7 +50,7 @@ private:
     Lattice lattice_;
     CellListBuilder lists_;
     RingCells rings_;
-    LineCells lines_;
+    StrokeCells strokes_;
     std::vector<Stretch> stretches_;
     std::vector<uint32_t> corners_;     // slots of the polygons that the bucket's corner is inside of
     std::vector<LatticePoint> points_;  // in quanta from the bucket's corner

@@ -5,6 +5,7 @@
 
 #include "technique/static_decals/line_reach.h"
 #include "technique/static_decals/ring_cuts.h"
+#include "technique/static_decals/stroke_part.h"
 
 namespace decalgl {
 namespace {
@@ -109,20 +110,38 @@ void add_ring(const double* vertices, VertexRange ring, VertexRange wanted, Refe
     }
 }
 
+// How far the stroke reaches from one of its vertices. Rounding may turn edges of few quanta any way.
+double reach_at(const StrokePart& part, size_t vertex, const DecalShape& shape, const ReferenceMaker& maker) {
+    const size_t before = part.before(vertex), after = part.after(vertex);
+    if (before == part.end || after == part.end)
+        return shape.longest_reach();
+    const auto point = [&](size_t i) { return maker.nearest(part.vertices + 2 * i); };
+    return shape.reach_near(point(before), point(vertex), point(after));
+}
+
 // A line of one vertex is a dot.
-void add_line(const double* vertices, VertexRange line, VertexRange wanted, int64_t reach,
-              ReferenceMaker& maker) {
-    const size_t begin = std::max(line.begin, wanted.begin), end = std::min(line.end, wanted.end);
-    if (begin >= end)
+void add_stroke(const StrokePart& part, VertexRange wanted, const DecalShape& shape, ReferenceMaker& maker) {
+    const size_t begin = std::max(part.begin, wanted.begin), end = std::min(part.end, wanted.end);
+    if (begin >= end || !part.is_drawn())
         return;
-    LatticePoint previous = maker.nearest(vertices + 2 * (begin == line.begin ? begin : begin - 1));
+    const bool mitred = shape.is_joined && shape.longest_reach() > double{shape.half_width};
+    const auto add_edge = [&](size_t from, size_t to) {
+        double reach = shape.half_width;
+        if (mitred)
+            reach = std::max(reach_at(part, from, shape, maker), reach_at(part, to, shape, maker));
+        const double* vertices = part.vertices;
+        const bool closing = from >= to;
+        maker.add_line_segment(maker.nearest(vertices + 2 * from), maker.nearest(vertices + 2 * to),
+                               static_cast<int64_t>(std::ceil(reach)), static_cast<uint32_t>(to), closing);
+    };
     for (size_t i = begin; i < end; ++i) {
-        const LatticePoint next = maker.nearest(vertices + 2 * i);
-        const bool dot = line.end - line.begin == 1;
-        if (i > line.begin || dot)
-            maker.add_line_segment(previous, next, reach, static_cast<uint32_t>(i), dot);
-        previous = next;
+        if (i > part.begin)
+            add_edge(i - 1, i);
+        else if (part.is_ring || part.end - part.begin == 1)
+            add_edge(part.end - 1, i);
     }
+    if (shape.is_joined && end == part.end && part.is_closed())
+        add_edge(part.is_ring ? part.end - 1 : part.begin, part.is_ring ? part.begin : part.begin + 1);
 }
 
 }  // namespace
@@ -203,13 +222,13 @@ BucketReferences make_references(const OrderedFeatures& features, const Run& run
         const VertexRange wanted{slot == run.first_slot ? run.first_vertex : features.first_vertex(slot),
                                  slot == run.last_slot ? run.end_vertex : features.end_vertex(slot)};
         maker.begin(static_cast<uint32_t>(slot));
-        const bool polygon = table.kind == FeatureKind::polygons;
-        const auto reach = static_cast<int64_t>(std::ceil(features.half_widths[slot]));
+        const DecalShape& shape = features.shapes[slot];
+        const bool rings = table.kind == FeatureKind::polygons;
         for_each_part(table, feature, [&](size_t begin, size_t end) {
-            if (polygon)
-                add_ring(vertices, {begin, end}, wanted, maker, crossings);
+            if (shape.is_stroke)
+                add_stroke({vertices, begin, end, rings}, wanted, shape, maker);
             else
-                add_line(vertices, {begin, end}, wanted, reach, maker);
+                add_ring(vertices, {begin, end}, wanted, maker, crossings);
         });
         if (!run.part_of_feature)
             crossings.resolve(*features.grid, static_cast<uint32_t>(slot), references);

@@ -27,6 +27,7 @@
 #include "decalgl/core/span.h"
 #include "decalgl/technique/technique.h"
 #include "technique/static_decals/bucket_grid.h"
+#include "technique/static_decals/style_table.h"
 
 namespace decalgl {
 
@@ -94,15 +95,20 @@ private:
     std::vector<uint64_t> keys_;
 };
 
-// What is drawn, in draw order: slots name the features, half widths are in quanta and 0 for polygons.
+// What is drawn, in draw order: slots name the features, shapes say how they go into cells. `arcs`, for layers with a
+// pattern along lines: how far along its part each vertex is, in metres.
 struct OrderedFeatures {
     const TechniqueInput* input;
     const BucketGrid* grid;
     Span<const Decal> slots;
-    Span<const float> half_widths;
+    Span<const DecalShape> shapes;
+    Span<const std::vector<double>> arcs;
 
     const Features& features(size_t slot) const {
         return input->layers[slots[slot].feature.layer - input->first_layer].features;
+    }
+    const std::vector<double>& arcs_of(size_t slot) const {
+        return arcs[slots[slot].feature.layer - input->first_layer];
     }
     // Of a feature's vertices, counted in its layer: the first, and one past the last.
     size_t first_vertex(size_t slot) const { return vertex_at(slot, 0); }

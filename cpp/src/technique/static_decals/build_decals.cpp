@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
@@ -42,30 +43,71 @@ void require_addressable(const TechniqueInput& input, size_t slots) {
                                            " features in one scene; draw a smaller part of the map at once");
 }
 
-void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
-    std::vector<Decal> slots = decals_of(input.layers, input.first_layer);
-    std::reverse(slots.begin(), slots.end());
+void collect_slots(const TechniqueInput& input, PreparedDecals& decals, std::vector<DecalShape>& shapes) {
+    std::vector<Decal> slots = slots_of(input);
     require_addressable(input, slots.size());
+    const StyleTable table(input, decals.grid);
     std::vector<DecalStyle> styles;
+    std::optional<std::array<uint8_t, 4>> first_color;
     for (const Decal& slot : slots) {
-        const DecalView view{&input.layers[slot.feature.layer - input.first_layer], slot};
+        const DecalView view = table.view(slot);
+        const DecalShape shape = table.shape_of(slot);
+        shapes.push_back(shape);
+        styles.push_back({});
+        (slot.is_stroke() ? decals.has_lines : decals.has_polygons) = true;
+        decals.has_clips |= shape.is_clip;
+        if (shape.is_clip)
+            continue;
         const uint8_t* color = view.color();
-        DecalStyle style{{color[0], color[1], color[2], color[3]}, 0.0F};
+        styles.back() = {{color[0], color[1], color[2], color[3]},
+                         static_cast<float>(view.half_width() / decals.grid.quantum)};
         if (slot.is_stroke()) {
-            style.half_width = static_cast<float>(view.half_width() / decals.grid.quantum);
-            decals.largest_scale = std::max(decals.largest_scale, line_scale(style.half_width));
-            decals.widest = std::max(decals.widest, style.half_width);
-            decals.narrowest =
-                decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
+            const float half_width = styles.back().half_width;
+            decals.narrowest = decals.widest == 0.0F ? half_width : std::min(decals.narrowest, half_width);
+            decals.widest = std::max(decals.widest, half_width);
+            decals.largest_scale = std::max(decals.largest_scale, int{shape.scale});
         }
-        styles.push_back(style);
-        decals.has_one_color &= style.color == styles.front().color;
+        decals.has_one_color &= styles.back().color == first_color.value_or(styles.back().color);
+        first_color = first_color.value_or(styles.back().color);
         decals.segments += segments_of(view.layer->features, view.feature());
         decals.has_translucency |= color[3] != 255;
-        (slot.is_stroke() ? decals.has_lines : decals.has_polygons) = true;
+    }
+    decals.style_flags = table.flags();
+    if (table.flags() != 0 || decals.has_clips) {
+        std::vector<uint32_t> kinds;
+        for (size_t i = 0; i < slots.size(); ++i)
+            kinds.push_back(table.kind_of(slots[i], shapes[i]));
+        decals.kinds = std::move(kinds);
+        decals.style_records = table.texels();
     }
     decals.slots = std::move(slots);
     decals.styles = std::move(styles);
+}
+
+bool has_pattern(const Stroke& stroke) {
+    return std::any_of(stroke.styles.begin(), stroke.styles.end(),
+                       [](const StrokeStyle& style) { return style.pattern.period > 0.0; });
+}
+
+// How far each vertex is along its part, in metres, of the layers that have patterns along lines.
+std::vector<std::vector<double>> measure_arcs(const TechniqueInput& input) {
+    std::vector<std::vector<double>> arcs(input.layers.size());
+    for (size_t l = 0; l < input.layers.size(); ++l) {
+        const Layer& layer = input.layers[l];
+        if (!has_pattern(layer.stroke) && !has_pattern(layer.casing))
+            continue;
+        const Features& features = layer.features;
+        const double* xy = features.coordinates.data();
+        arcs[l].assign(features.vertex_count(), 0.0);
+        parallel_for(features.part_count(), 256, input.threads, [&](size_t begin, size_t end) {
+            for (size_t part = begin; part < end; ++part)
+                for (auto i = static_cast<size_t>(features.part_offsets[part]) + 1;
+                     i < static_cast<size_t>(features.part_offsets[part + 1]); ++i)
+                    arcs[l][i] =
+                        arcs[l][i - 1] + std::hypot(xy[2 * i] - xy[2 * i - 2], xy[2 * i + 1] - xy[2 * i - 1]);
+        });
+    }
+    return arcs;
 }
 
 std::vector<BucketReferences> make_all_references(const OrderedFeatures& features,
@@ -168,7 +210,8 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
     }
     const uint64_t bytes = 16 * end.first_texel + 4 * end.first_cell +
                            4 * uint64_t{decals.grid.bucket_count()} + decals.styles.size_bytes() +
-                           decals.slots.size_bytes();
+                           decals.slots.size_bytes() + decals.kinds.size_bytes() +
+                           decals.style_records.size_bytes();
     if (end.first_texel > most_texels || end.first_cell > most_cells)
         refuse_size(bytes);
     decals.charge.resize(bytes);
@@ -195,12 +238,10 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
     auto decals = std::make_unique<PreparedDecals>();
     decals->charge = MemoryCharge(input.memory, "static: prepared", 0);
     decals->grid = BucketGrid::over(input.bounds, input.positions, choose_resolution(input));
-    collect_slots(input, *decals);
-    std::vector<float> half_widths;
-    half_widths.reserve(decals->styles.size());
-    for (const DecalStyle& style : decals->styles)
-        half_widths.push_back(style.half_width);
-    const OrderedFeatures features{&input, &decals->grid, decals->slots, half_widths};
+    std::vector<DecalShape> shapes;
+    collect_slots(input, *decals, shapes);
+    const std::vector<std::vector<double>> arcs = measure_arcs(input);
+    const OrderedFeatures features{&input, &decals->grid, decals->slots, shapes, arcs};
     std::vector<MemoryCharge> reference_charges, chunk_charges;
     std::vector<BucketReferences> references = make_all_references(features, reference_charges, progress);
     std::vector<CellChunk> chunks = make_chunks(features, references, chunk_charges, progress);
@@ -213,7 +254,8 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
 
 PreparedCounts PreparedDecals::counts() const {
     const size_t bytes = bucket_entries.size_bytes() + cells.size_bytes() + words.size_bytes() +
-                         styles.size_bytes() + slots.size_bytes();
+                         styles.size_bytes() + slots.size_bytes() + kinds.size_bytes() +
+                         style_records.size_bytes();
     return {slots.size(), segments, pieces, bytes, std::ldexp(grid.quantum, largest_scale)};
 }
 

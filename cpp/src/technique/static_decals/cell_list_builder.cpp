@@ -7,9 +7,8 @@ namespace decalgl {
 namespace {
 
 constexpr uint32_t no_slot = std::numeric_limits<uint32_t>::max();
-constexpr uint32_t no_point = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t texel_words = 4;
-constexpr size_t most_words_of_an_edge = 3;  // header and two points
+constexpr size_t most_words_of_an_edge = 4;  // header, two points and a phase
 
 // Lists that are too long for their count need an end to be seen by.
 uint32_t texels_of(uint32_t words) {
@@ -38,17 +37,32 @@ void CellListBuilder::open_group(uint32_t cell, uint32_t slot, uint32_t flags) {
     add_word(cell, HEADER | flags | slot);
 }
 
-void CellListBuilder::add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, uint32_t to) {
+void CellListBuilder::add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, uint32_t to,
+                               const uint32_t* phase) {
+    begin_run(cell, slot, flags, from, phase);
+    if (from != to)
+        add_word(cell, to);
+    cells_[cell].last = to;
+    ++edges_;
+}
+
+void CellListBuilder::add_disc(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase) {
+    begin_run(cell, slot, LINE, at, phase);
+    add_word(cell, at);
+}
+
+// Goes on from a point, or moves there.
+void CellListBuilder::begin_run(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from,
+                                const uint32_t* phase) {
     reserve_words();
     if (cells_[cell].slot != slot)
         open_group(cell, slot, flags);
-    Cell& open = cells_[cell];
-    if (open.last != from)
-        add_word(cell, from | MOVE);
-    if (from != to)
-        add_word(cell, to);
-    open.last = to;
-    ++edges_;
+    if (cells_[cell].last == from)
+        return;
+    add_word(cell, from | MOVE);
+    if (phase != nullptr)
+        add_word(cell, *phase);
+    cells_[cell].last = from;
 }
 
 void CellListBuilder::add_covers(uint32_t cell, uint32_t slot, uint32_t flags) {

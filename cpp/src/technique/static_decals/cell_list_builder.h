@@ -15,6 +15,9 @@
 
 namespace decalgl {
 
+// A flag for each cell of a bucket.
+using CellMask = std::vector<uint8_t>;
+
 // The lists of some neighbouring buckets: entries count from the chunk's own first cell and texel.
 struct CellChunk {
     std::vector<uint32_t> bucket_entries;
@@ -30,13 +33,24 @@ public:
     void begin(int level);
 
     int level() const { return level_; }
+    size_t cell_count() const { return cells_.size(); }
     uint32_t cell_at(int64_t column, int64_t row) const {
         return static_cast<uint32_t>(row << level_ | column);
     }
 
-    // `from` and `to`: points as words, without MOVE. `flags`: LINE or none.
-    void add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, uint32_t to);
+    // `from` and `to`: points as words, without MOVE. `flags`: LINE, CLIP or none. `phase`: of a stroke with a
+    // pattern, how far along the period `from` is.
+    void add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, uint32_t to,
+                  const uint32_t* phase = nullptr);
+    // Lets the next edge move to its beginning, and tell its phase, even where the run has come to.
+    void lift_pen(uint32_t cell, uint32_t slot) {
+        if (cells_[cell].slot == slot)
+            cells_[cell].last = no_point;
+    }
+    // A joined stroke's disc.
+    void add_disc(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase);
     void add_covers(uint32_t cell, uint32_t slot, uint32_t flags);
+    bool has_group(uint32_t cell, uint32_t slot) const { return cells_[cell].slot == slot; }
     bool is_covered(uint32_t cell, uint32_t slot) const {
         return cells_[cell].slot == slot && (words_[cells_[cell].header].word & COVERS) != 0;
     }
@@ -45,6 +59,8 @@ public:
     void finish(CellChunk& chunk);
 
 private:
+    static constexpr uint32_t no_point = 0xFFFFFFFFU;
+
     struct Cell {
         uint32_t slot;    // of the open group
         uint32_t header;  // of the open group, in words_
@@ -56,6 +72,7 @@ private:
         uint32_t word;
     };
 
+    void begin_run(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, const uint32_t* phase);
     void open_group(uint32_t cell, uint32_t slot, uint32_t flags);
     // Room for the words of one call.
     void reserve_words();

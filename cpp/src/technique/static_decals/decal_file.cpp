@@ -31,8 +31,10 @@ struct DecalRecord {
     uint32_t has_lines;
     uint32_t has_one_color;
     uint32_t has_translucency;
+    uint32_t style_flags;
+    uint32_t has_clips;
 };
-static_assert(sizeof(DecalRecord) == 120, "saved as it is");
+static_assert(sizeof(DecalRecord) == 128, "saved as it is");
 
 constexpr size_t block_items = 1 << 18;
 constexpr int64_t farthest_bucket = int64_t{1} << 31;
@@ -40,12 +42,25 @@ constexpr int largest_scale_there_is = 64;
 
 DecalRecord record_of(const PreparedDecals& decals) {
     const BucketGrid& grid = decals.grid;
-    return {grid.positions,       grid.bucket_size,       grid.quantum,
-            grid.first_bucket_x,  grid.first_bucket_y,    decals.segments,
-            decals.pieces,        grid.columns,           grid.rows,
-            decals.longest_list,  decals.largest_scale,   decals.widest,
-            decals.narrowest,     decals.has_polygons,    decals.has_lines,
-            decals.has_one_color, decals.has_translucency};
+    return {grid.positions,
+            grid.bucket_size,
+            grid.quantum,
+            grid.first_bucket_x,
+            grid.first_bucket_y,
+            decals.segments,
+            decals.pieces,
+            grid.columns,
+            grid.rows,
+            decals.longest_list,
+            decals.largest_scale,
+            decals.widest,
+            decals.narrowest,
+            decals.has_polygons,
+            decals.has_lines,
+            decals.has_one_color,
+            decals.has_translucency,
+            decals.style_flags,
+            decals.has_clips};
 }
 
 void restore(const DecalRecord& record, PreparedDecals& decals) {
@@ -61,6 +76,8 @@ void restore(const DecalRecord& record, PreparedDecals& decals) {
     decals.has_lines = record.has_lines != 0;
     decals.has_one_color = record.has_one_color != 0;
     decals.has_translucency = record.has_translucency != 0;
+    decals.style_flags = record.style_flags;
+    decals.has_clips = record.has_clips != 0;
 }
 
 bool is_power_of_two(double value) {
@@ -123,6 +140,19 @@ bool name_slots(const PreparedDecals& decals) {
     });
 }
 
+// Every slot's record lies within the table.
+bool are_kinds(const PreparedDecals& decals) {
+    if (decals.style_flags == 0 && !decals.has_clips)
+        return decals.kinds.size() == 0;
+    const size_t texels = decals.style_records.size();
+    bool all = decals.kinds.size() == decals.slots.size() && texels > 0;
+    for (size_t i = 0; all && i < decals.kinds.size(); ++i) {
+        const size_t first = decals.kinds[i] >> SCALE_BITS;
+        all = first < texels && first + style_record_size(decals.style_records[first]) <= texels;
+    }
+    return all;
+}
+
 }  // namespace
 
 void PreparedDecals::save(ArchiveWriter& archive, const std::string& prefix) const {
@@ -131,6 +161,8 @@ void PreparedDecals::save(ArchiveWriter& archive, const std::string& prefix) con
     archive.add(prefix + "cells", cells.span());
     archive.add(prefix + "words", words.span());
     archive.add(prefix + "styles", styles.span());
+    archive.add(prefix + "kinds", kinds.span());
+    archive.add(prefix + "style_records", style_records.span());
     archive.add(prefix + "slots", slots.span());
 }
 
@@ -142,12 +174,16 @@ std::unique_ptr<PreparedDecals> open_decals(const ArchiveReader& archive, const 
     decals->words = archive.array<uint32_t>(prefix + "words");
     decals->styles = archive.array<DecalStyle>(prefix + "styles");
     decals->slots = archive.array<Decal>(prefix + "slots");
+    decals->kinds = archive.array<uint32_t>(prefix + "kinds");
+    decals->style_records = archive.array<StyleTexel>(prefix + "style_records");
     const bool has_scale = decals->largest_scale >= 0 && decals->largest_scale <= largest_scale_there_is;
     if (!has_scale || !is_grid(decals->grid, decals->bucket_entries.size()))
         archive.refuse("the grid of the static index makes no sense");
     if (decals->slots.empty() || decals->styles.size() != decals->slots.size() || !are_lists(*decals) ||
         !name_slots(*decals))
         archive.refuse("the cells of the static index do not fit together");
+    if (!are_kinds(*decals))
+        archive.refuse("the styles of the static index do not fit together");
     return decals;
 }
 

@@ -9,6 +9,7 @@
 #include "decalgl/core/shared_array.h"
 #include "decalgl/technique/technique.h"
 #include "technique/static_decals/bucket_grid.h"
+#include "technique/static_decals/style_table.h"
 
 namespace decalgl {
 
@@ -35,13 +36,17 @@ public:
     SharedArray<uint32_t> cells;
     SharedArray<uint32_t> words;
     SharedArray<DecalStyle> styles;
-    SharedArray<Decal> slots;  // topmost first
+    SharedArray<Decal> slots;     // topmost first
+    SharedArray<uint32_t> kinds;  // of each slot, as style_records.h says; empty where all are plain
+    SharedArray<StyleTexel> style_records;
     uint64_t segments = 0;
     uint64_t pieces = 0;
     uint32_t longest_list = 0;  // words
     int largest_scale = 0;
     float widest = 0.0F;  // half widths of lines, in quanta
     float narrowest = 0.0F;
+    uint32_t style_flags = 0;  // of all style records
+    bool has_clips = false;
     bool has_polygons = false;
     bool has_lines = false;
     bool has_one_color = true;

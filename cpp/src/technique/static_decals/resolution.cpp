@@ -49,11 +49,14 @@ void add_samples(const Layer& layer, const Bounds& bounds, std::vector<Sample>& 
     const size_t step = std::max<size_t>(1, count / samples_per_layer);
     for (size_t feature = 0; feature < count; feature += step) {
         const Span<const double> coordinates = features.vertices(feature);
-        const bool is_line = features.kind == FeatureKind::lines;
-        samples.push_back({static_cast<double>(std::min(step, count - feature)),
-                           static_cast<double>(coordinates.size() / 2),
-                           is_line ? layer.stroke.width(feature) : 0.0,
-                           is_line ? 0.0 : area_of(coordinates, bounds)});
+        const auto weight = static_cast<double>(std::min(step, count - feature));
+        const auto vertices = static_cast<double>(coordinates.size() / 2);
+        if (!layer.fill.empty())
+            samples.push_back({weight, vertices, 0.0, area_of(coordinates, bounds)});
+        for (const Stroke* stroke : {&layer.stroke, &layer.casing}) {
+            if (!stroke->empty())
+                samples.push_back({weight, vertices, std::max(stroke->width(feature), stroke->widest), 0.0});
+        }
     }
 }
 

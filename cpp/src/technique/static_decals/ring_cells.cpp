@@ -22,6 +22,8 @@ void RingCells::begin(uint32_t slot) {
     const int64_t last = (int64_t{1} << lists_->level()) - 1;
     cells_ = {cell_bits(lists_->level()), 0, 0, last, last};
     slot_ = slot;
+    flags_ = 0;
+    touched_ = nullptr;
     for (; crossed_columns_ != 0; crossed_columns_ &= crossed_columns_ - 1)
         crossed_rows_[static_cast<size_t>(__builtin_ctzll(crossed_columns_))] = 0;
     changed_columns_ = 0;
@@ -88,10 +90,13 @@ void RingCells::add_piece(const Piece& piece) {
         return static_cast<uint32_t>(point.x - left + bias) | static_cast<uint32_t>(point.y - bottom + bias)
                                                                   << COORDINATE_BITS;
     };
-    lists_->add_edge(lists_->cell_at(piece.column, piece.row), slot_, 0, word(from), word(to));
+    const uint32_t cell = lists_->cell_at(piece.column, piece.row);
+    if (touched_ == nullptr || (*touched_)[cell] != 0)
+        lists_->add_edge(cell, slot_, flags_, word(from), word(to));
 }
 
-void RingCells::finish(bool bucket_corner_inside) {
+template <typename OnInside>
+void RingCells::for_each_inside(bool bucket_corner_inside, OnInside on_inside) const {
     const int64_t side = cells_.last_column + 1;
     const uint64_t lowest_row = (bucket_corner_inside ? ~uint64_t{0} : 0) ^ changed_columns_;
     if (crossed_columns_ == 0 && (lowest_row & lowest_bits(side)) == 0)
@@ -101,8 +106,31 @@ void RingCells::finish(bool bucket_corner_inside) {
         uint64_t inside =
             (running_parity(crossed_rows_[static_cast<size_t>(column)]) << 1 ^ first) & lowest_bits(side);
         for (; inside != 0; inside &= inside - 1)
-            lists_->add_covers(lists_->cell_at(column, __builtin_ctzll(inside)), slot_, 0);
+            on_inside(lists_->cell_at(column, __builtin_ctzll(inside)));
     }
+}
+
+void RingCells::finish(bool bucket_corner_inside) {
+    for_each_inside(bucket_corner_inside, [&](uint32_t cell) { lists_->add_covers(cell, slot_, 0); });
+}
+
+void RingCells::begin_clip(uint32_t slot, const CellMask& touched) {
+    begin(slot);
+    flags_ = CLIP;
+    touched_ = &touched;
+}
+
+CellMask RingCells::finish_clip(bool bucket_corner_inside, bool is_offset) {
+    CellMask open(lists_->cell_count(), is_offset ? 1 : 0);
+    for_each_inside(bucket_corner_inside, [&](uint32_t cell) { open[cell] = is_offset ? 0 : 1; });
+    for (uint32_t cell = 0; cell < open.size(); ++cell) {
+        if (!lists_->has_group(cell, slot_))
+            continue;
+        if (open[cell] != 0)
+            lists_->add_covers(cell, slot_, CLIP);
+        open[cell] = 1;
+    }
+    return open;
 }
 
 }  // namespace decalgl

@@ -42,6 +42,11 @@ public:
     // Ends the polygon: marks the cells whose corner is inside.
     void finish(bool bucket_corner_inside);
 
+    // The same for a polygon that cuts the next decal off, which is in the `touched` cells alone. Says in which
+    // of the bucket's cells that decal may show.
+    void begin_clip(uint32_t slot, const CellMask& touched);
+    CellMask finish_clip(bool bucket_corner_inside, bool is_offset);
+
 private:
     struct Piece {
         int64_t column, row;
@@ -53,7 +58,13 @@ private:
 
     CellListBuilder* lists_;
     SquareRange cells_{};
+    // Calls on_inside(cell) for each cell whose corner is inside.
+    template <typename OnInside>
+    void for_each_inside(bool bucket_corner_inside, OnInside on_inside) const;
+
     uint32_t slot_ = 0;
+    uint32_t flags_ = 0;
+    const CellMask* touched_ = nullptr;  // of a clip
     std::vector<Piece> pieces_;
     std::array<uint64_t, 1 << FINEST_LEVEL> crossed_rows_{};  // of each column's left border; a bit a row
     uint64_t changed_columns_ = 0;                            // corners of the lowest row; a bit a column

@@ -6,6 +6,7 @@
 
 #include "gl/gl.h"
 #include "gl/texture.h"
+#include "technique/static_decals/area_classes.h"
 #include "technique/static_decals/levels.h"
 
 namespace decalgl {
@@ -31,6 +32,24 @@ void set_grid(const BucketGrid& grid, gl::Program& program) {
     program.set("quanta_per_metre", static_cast<float>(1.0 / grid.quantum));
 }
 
+bool has_styles(const PreparedDecals& decals) {
+    return decals.kinds.size() > 0;
+}
+
+void add_style_flags(const PreparedDecals& decals, gl::Flags& flags) {
+    if (!has_styles(decals))
+        return;
+    flags.insert("STYLES");
+    const std::pair<uint32_t, const char*> each[] = {{STYLE_JOINED, "JOINED"},
+                                                     {STYLE_PATTERN, "PATTERNS"},
+                                                     {STYLE_HATCH, "HATCHES"},
+                                                     {STYLE_TANGENT | STYLE_THOENY, "SLOPES"}};
+    for (const auto& [bit, flag] : each) {
+        if ((decals.style_flags & bit) != 0)
+            flags.insert(flag);
+    }
+}
+
 }  // namespace
 
 std::unique_ptr<const Prepared> StaticDecals::preprocess(const TechniqueInput& input,
@@ -51,12 +70,19 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const Memory
     cells_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, decals.cells.span());
     texels_ = gl::TextureBuffer::from(memory, "static: words", GL_RGBA32UI, decals.words.span());
     styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, decals.styles.span());
+    if (has_styles(decals)) {
+        kinds_ = gl::TextureBuffer::from(memory, "static: styles", GL_R32UI, decals.kinds.span());
+        style_records_ =
+            gl::TextureBuffer::from(memory, "static: styles", GL_RGBA32UI, decals.style_records.span());
+    }
     no_vertices_ = gl::VertexArray::create();
 }
 
 // Whether some pixel spans enough texels of the finest level (levels.glsl).
 bool StaticDecals::needs_levels(const View& view) const {
     const double texel = prepared_->grid.bucket_size / LEVEL_TEXELS;
+    if ((prepared_->style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0)
+        return false;  // levels know no slopes
     return view.antialias == Antialias::coverage && view.widest_pixel >= FEWEST_TEXELS * texel;
 }
 
@@ -76,22 +102,54 @@ UpdateReport StaticDecals::update(const View& view) {
     UpdateReport report;
     report.pieces = prepared_->pieces;
     report.bytes = buckets_.buffer().bytes() + cells_.buffer().bytes() + texels_.buffer().bytes() +
-                   styles_.buffer().bytes() + levels_.bytes();
+                   styles_.buffer().bytes() + kinds_.buffer().bytes() + style_records_.buffer().bytes() +
+                   levels_.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
 
 void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     gl::Flags flags;
-    if (prepared_->has_translucency)
+    const bool has_bands = (prepared_->style_flags & STYLE_BANDS) != 0;
+    if (has_bands)
+        flags.insert("BANDS");
+    if (prepared_->has_translucency || has_bands)
         flags.insert("TRANSLUCENT");
-    else if (prepared_->has_one_color && view.antialias == Antialias::none)
+    else if (prepared_->has_one_color && view.antialias == Antialias::none && !has_styles(*prepared_))
         flags.insert("ONE_COLOR");
     if (view.antialias == Antialias::coverage)
-        flags.insert("COVERAGE");
+        draw_areas(flags, gbuffer, programs);
+    else
+        draw_full_screen(std::move(flags), gbuffer, programs);
+}
+
+// The class of each pixel first, then those of each class (area_classes.h).
+void StaticDecals::draw_areas(const gl::Flags& flags, const GBufferView& gbuffer,
+                              gl::ProgramLibrary& programs) {
+    const auto draw_class = [&](const char* flag) {
+        gl::Flags all = flags;
+        all.insert(flag);
+        if (draws_levels_)
+            all.insert("LEVELS");
+        draw_full_screen(std::move(all), gbuffer, programs);
+    };
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    draw_class("CLASSES");
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_EQUAL);
+    const auto draw_rest = [&](const char* flag, double kind) {
+        glDepthRange(kind, kind);
+        draw_class(flag);
+    };
+    draw_rest("CELLS", CLASS_CELLS);
+    draw_rest("POINTS", CLASS_POINTS);
     if (draws_levels_)
-        flags.insert("LEVELS");
-    draw_full_screen(std::move(flags), gbuffer, programs);
+        draw_rest("FROM_LEVELS", CLASS_LEVELS);
+    glDepthRange(0.0, 1.0);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+    glDisable(GL_DEPTH_TEST);
 }
 
 void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
@@ -100,7 +158,9 @@ void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::Program
 
 void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
                                     gl::ProgramLibrary& programs) {
-    const bool one_width = prepared_->has_lines && prepared_->narrowest == prepared_->widest;
+    const bool one_width =
+        prepared_->has_lines && prepared_->narrowest == prepared_->widest && !has_styles(*prepared_);
+    add_style_flags(*prepared_, flags);
     if (prepared_->has_lines)
         flags.insert("LINES");
     if (one_width)
@@ -111,7 +171,10 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
-    if (flags.count("COVERAGE") != 0) {
+    const bool sees_area =
+        flags.count("CLASSES") + flags.count("CELLS") + flags.count("POINTS") + flags.count("FROM_LEVELS") >
+        0;
+    if (sees_area || flags.count("SLOPES") != 0) {
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
     }
@@ -123,6 +186,12 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     texels_.bind(4);
     program.set("decal_styles", 5);
     styles_.bind(5);
+    if (has_styles(*prepared_)) {
+        program.set("decal_kinds", 7);
+        kinds_.bind(7);
+        program.set("style_records", 8);
+        style_records_.bind(8);
+    }
     set_grid(prepared_->grid, program);
     if (flags.count("LEVELS") != 0) {
         program.set("levels", 6);

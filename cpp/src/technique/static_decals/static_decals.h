@@ -19,12 +19,14 @@ public:
                                          const MemoryAccount& memory) const override;
     void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
+    bool needs_depth(const View& view) const override { return view.antialias == Antialias::coverage; }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
     bool needs_levels(const View& view) const;
     void make_levels();
+    void draw_areas(const gl::Flags& flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     void draw_full_screen(gl::Flags flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
 
     std::shared_ptr<const PreparedDecals> prepared_;
@@ -33,7 +35,8 @@ private:
     gl::TextureBuffer cells_;
     gl::TextureBuffer texels_;
     gl::TextureBuffer styles_;
-    gl::Texture2D levels_;  // made by the first view that needs them
+    gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
+    gl::Texture2D levels_;                     // made by the first view that needs them
     bool draws_levels_ = false;
     gl::VertexArray no_vertices_;
 };

@@ -1,0 +1,202 @@
+// Styles that several decals share (style_records.h): what of a stroke or a hatched fill covers a point, and in which colour.
+//
+// After Zechmeister 2020, section 3.6: a point is in a stroke when it is beside a segment or in the corner between two.
+// Each part answers with the share of the half width at which it would just cover the point, so that patterns that
+// change the width, and colours across it, need no tests of their own.
+//
+//           came  \  u
+//        ----------b           bevel   cut across u
+//                 / \          miter   within the half width of both lines
+//                /   \ goes    round   around b
+#include "technique/static_decals/style_records.h"
+
+uniform usamplerBuffer decal_kinds;
+uniform usamplerBuffer style_records;
+
+const float not_covered = 2.0;
+
+struct Style {
+    uint flags;
+    int record;  // its first texel
+    float miter_turn;
+    float periods_per_unit;
+    uint counts;
+    float scale;       // units per quantum
+    float half_width;  // units
+};
+
+bool has(Style style, uint flag) {
+    return (style.flags & flag) != 0u;
+}
+
+vec4 record_texel(int index) {
+    return uintBitsToFloat(texelFetch(style_records, index));
+}
+
+// `half_width` in quanta.
+Style style_of(uint slot, float half_width) {
+    uint kind = texelFetch(decal_kinds, int(slot)).r;
+    Style style;
+    style.record = int(kind >> SCALE_BITS);
+    uvec4 first = texelFetch(style_records, style.record);
+    style.scale = exp2(-float(kind & SCALE_MASK));
+    style.half_width = half_width * style.scale;
+    style.flags = first.x;
+    style.miter_turn = uintBitsToFloat(first.y);
+    style.periods_per_unit = uintBitsToFloat(first.z) / style.scale;
+    style.counts = first.w;
+    return style;
+}
+
+int mark_count(Style style) {
+    return int(style.counts & COUNT_BITS_OF_MARKS);
+}
+
+// How wide the pattern lets the line be, as a share; below 0 where there is no mark.
+float pattern_width(Style style, float periods) {
+#ifdef PATTERNS
+    if (!has(style, STYLE_PATTERN)) return 1.0;
+    float at = fract(periods);
+    float widest = -1.0;
+    int i = 0;
+    do {
+        vec4 mark = record_texel(style.record + 1 + i);
+        float share = (at - mark.x) / max(mark.y - mark.x, 1e-9);
+        if (share >= 0.0 && share <= 1.0) widest = max(widest, mix(mark.z, mark.w, share));
+    } while (++i < mark_count(style));
+    return widest;
+#else
+    return 1.0;
+#endif
+}
+
+// Where the walk along a stroke has come to: the edge before the next one, and how far along the pattern that begins.
+struct Pen {
+    vec2 came;
+    bool has_came;
+    bool awaits_phase;
+    float periods;
+};
+
+const Pen lifted_pen = Pen(vec2(0.0), false, false, 0.0);
+
+// `run`: the edge's length on the map, in units.
+void move_on(inout Pen pen, Style style, vec2 from, vec2 to, float run) {
+    vec2 goes = from - to;
+    bool is_edge = goes != vec2(0.0);
+    pen.came = is_edge ? goes : pen.came;
+    pen.has_came = pen.has_came || is_edge;
+    pen.periods += run * style.periods_per_unit;
+}
+
+float within_width(float share, float width) {
+    return share <= width ? share : not_covered;
+}
+
+float corner_share(Style style, vec2 at, vec2 came, vec2 goes) {
+    float before = length(came), after = length(goes);
+    float cosine = dot(came, goes) / (before * after);
+    float apart = max(abs(came.x * at.y - came.y * at.x) / before, abs(goes.x * at.y - goes.y * at.x) / after);
+    if (has(style, STYLE_BEVEL)) {
+        vec2 u = came / before - goes / after;
+        float reach = length(u) * sqrt(max(0.5 * (1.0 + cosine), 0.0));
+        apart = reach > 0.0 ? max(apart, dot(at, u) / reach) : 1e9;
+    }
+    bool outside = dot(at, came) < 0.0 || dot(at, goes) > 0.0;
+    bool pointed = has(style, STYLE_BEVEL) || (has(style, STYLE_MITER) && cosine >= style.miter_turn);
+    return pointed ? (outside ? not_covered : apart / style.half_width) : length(at) / style.half_width;
+}
+
+// The share at which a joined stroke's next edge covers a point, with the corner before it. `from` and `to` lead from
+// the edge's ends to the point, `run` is its length on the map.
+float joined_share(Style style, Pen pen, vec2 from, vec2 to, float run) {
+    vec2 goes = from - to;
+    float length_of_edge = length(goes);
+    float width = pattern_width(style, pen.periods);
+    if (length_of_edge == 0.0) return within_width(length(from) / style.half_width, width);
+    float t = dot(from, goes) / length_of_edge;
+    float s = abs(goes.x * from.y - goes.y * from.x) / length_of_edge;
+    bool beside = t >= 0.0 && t <= length_of_edge;
+    float there = pen.periods + t / length_of_edge * run * style.periods_per_unit;
+    float share = beside ? within_width(s / style.half_width, pattern_width(style, there)) : not_covered;
+    if (pen.has_came) share = min(share, within_width(corner_share(style, from, pen.came, goes), width));
+    return share;
+}
+
+// The same of a plain stroke: a bar, and the discs around both ends.
+float plain_share(Style style, vec2 from, vec2 to) {
+    vec2 goes = from - to;
+    float t = clamp(dot(from, goes) / max(dot(goes, goes), 1e-6), 0.0, 1.0);
+    return length(from - t * goes) / style.half_width;
+}
+
+float stroke_share(Style style, Pen pen, vec2 from, vec2 to, float run) {
+#ifdef JOINED
+    if (has(style, STYLE_JOINED)) return joined_share(style, pen, from, to, run);
+#endif
+    return plain_share(style, from, to);
+}
+
+// The colour at a share of the half width, where the decal's own is `straight`.
+vec4 band_color(Style style, vec4 straight, float share) {
+#ifdef BANDS
+    int first = style.record + 1 + mark_count(style);
+    int last = first + int(style.counts >> BANDS_SHIFT) - 1;
+    int i = first;
+    if (has(style, STYLE_BANDS)) {
+        while (i < last && share > uintBitsToFloat(texelFetch(style_records, i).x)) ++i;
+        vec4 color = unpackUnorm4x8(texelFetch(style_records, i).y);
+        return vec4(color.rgb, color.a * straight.a);
+    }
+#endif
+    return straight;
+}
+
+// Whether a fill shows at a place, in quanta from its bucket's corner.
+bool fill_shows(Style style, ivec2 bucket, vec2 inside) {
+#ifdef HATCHES
+    if (!has(style, STYLE_HATCH)) return true;
+    float reach = style.miter_turn;  // the same place in the record: half the lines' width, in spacings
+    uint sets = uint(texelFetch(style_records, style.record).z);
+    bool shows = false;
+    uint i = 0u;
+    do {
+        vec4 steps = record_texel(style.record + 1 + 2 * int(i));
+        vec2 leaps = record_texel(style.record + 2 + 2 * int(i)).xy;
+        float spacings = dot(inside, steps.xy) + steps.z + fract(dot(vec2(bucket), leaps));
+        shows = shows || abs(spacings - round(spacings)) <= reach;
+    } while (++i < sets);
+    return shows;
+#else
+    return true;
+#endif
+}
+
+#ifdef SLOPES
+// How lengths on the map are seen on the surface at this pixel, and Thöny's factor of widths (2018, section 3.3).
+mat2 slope_metric = mat2(1.0);
+float slope_width = 1.0;
+
+void set_slope(vec2 gradient) {
+    float squared = dot(gradient, gradient);
+    float steep = sqrt(1.0 + squared);
+    float stretch = squared > 0.0 ? (steep - 1.0) / squared : 0.0;
+    slope_metric = mat2(1.0) + stretch * outerProduct(gradient, gradient);
+    slope_width = mix(1.0 / steep, 1.0, clamp(-forward.z, 0.0, 1.0));
+}
+#endif
+
+// Vectors of a stroke as they are measured.
+mat2 metric_of(Style style) {
+#ifdef SLOPES
+    if (has(style, STYLE_TANGENT)) return slope_metric;
+#endif
+    return mat2(1.0);
+}
+
+float width_factor(Style style) {
+#ifdef SLOPES
+    if (has(style, STYLE_THOENY)) return slope_width;
+#endif
+    return 1.0;
+}

@@ -1,0 +1,129 @@
+// Style records on the CPU: the same tests as stroke.glsl and hatch.glsl, for picking and for levels of detail.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "technique/static_decals/prepared_decals.h"
+
+namespace decalgl {
+
+constexpr double not_covered = 2.0;  // a share of a half width that no point is covered at
+
+inline float float_of(uint32_t bits) {
+    float value = 0.0F;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+struct PlanePoint {
+    double x, y;
+};
+
+inline PlanePoint operator-(PlanePoint a, PlanePoint b) {
+    return {a.x - b.x, a.y - b.y};
+}
+inline double dot(PlanePoint a, PlanePoint b) {
+    return a.x * b.x + a.y * b.y;
+}
+inline double cross(PlanePoint a, PlanePoint b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+// One slot's style, as it is written in the tables.
+class StyleReader {
+public:
+    StyleReader() = default;
+    StyleReader(const PreparedDecals& decals, uint32_t slot) : half_width_(decals.styles[slot].half_width) {
+        if (decals.kinds.size() == 0) {
+            scale_ = line_scale(decals.styles[slot].half_width);
+            return;
+        }
+        scale_ = static_cast<int>(decals.kinds[slot] & SCALE_MASK);
+        record_ = &decals.style_records[decals.kinds[slot] >> SCALE_BITS];
+    }
+
+    bool is(uint32_t flag) const { return (record_[0][0] & flag) != 0; }
+    int scale() const { return scale_; }
+    double half_width() const { return std::ldexp(half_width_, -scale_); }  // in units of the group's words
+    double periods_per_unit() const {
+        return is(STYLE_PATTERN) ? std::ldexp(double{float_of(record_[0][2])}, scale_) : 0.0;
+    }
+
+    // How wide the pattern lets the line be here, as a share; below 0 where there is no mark.
+    double width_at(double periods) const {
+        if (!is(STYLE_PATTERN))
+            return 1.0;
+        const double at = periods - std::floor(periods);
+        double widest = -1.0;
+        for (uint32_t i = 1; i <= mark_count(); ++i) {
+            const double begin = float_of(record_[i][0]), end = float_of(record_[i][1]);
+            if (at < begin || at > end)
+                continue;
+            const double share = end > begin ? (at - begin) / (end - begin) : 0.0;
+            widest = std::max(widest, float_of(record_[i][2]) +
+                                          share * (float_of(record_[i][3]) - float_of(record_[i][2])));
+        }
+        return widest;
+    }
+
+    // The share of the half width at which a joined stroke's corner between two edges covers a point; all lead from
+    // the corner.
+    double corner_share(PlanePoint at, PlanePoint came, PlanePoint goes) const {
+        const double before = std::sqrt(dot(came, came)), after = std::sqrt(dot(goes, goes));
+        const double cosine = dot(came, goes) / (before * after);
+        const bool mitred = is(STYLE_MITER) && cosine >= double{float_of(record_[0][1])};
+        if (!mitred && !is(STYLE_BEVEL))
+            return std::sqrt(dot(at, at)) / half_width();
+        if (dot(at, came) < 0.0 || dot(at, goes) > 0.0)
+            return not_covered;
+        double apart = std::max(std::abs(cross(came, at)) / before, std::abs(cross(goes, at)) / after);
+        if (is(STYLE_BEVEL)) {
+            const PlanePoint out{came.x / before - goes.x / after, came.y / before - goes.y / after};
+            const double length = std::sqrt(dot(out, out)),
+                         half_turn = std::sqrt(std::max(0.5 * (1.0 + cosine), 0.0));
+            if (length * half_turn <= 0.0)
+                return not_covered;
+            apart = std::max(apart, dot(at, out) / (length * half_turn));
+        }
+        return apart / half_width();
+    }
+
+    std::array<uint8_t, 4> color(std::array<uint8_t, 4> own, double share) const {
+        if (!is(STYLE_BANDS))
+            return own;
+        uint32_t i = 1 + mark_count();
+        const uint32_t last = i + (record_[0][3] >> BANDS_SHIFT) - 1;
+        while (i < last && share > double{float_of(record_[i][0])})
+            ++i;
+        std::array<uint8_t, 4> color{};
+        std::memcpy(color.data(), &record_[i][1], sizeof color);
+        color[3] = static_cast<uint8_t>(std::lrint(color[3] * own[3] / 255.0));
+        return color;
+    }
+
+    // Whether a hatch covers a place, in quanta from the corner of a bucket.
+    bool hatch_covers(int64_t bucket_column, int64_t bucket_row, PlanePoint inside) const {
+        for (uint32_t set = 0; set < record_[0][2]; ++set) {
+            const StyleTexel &step = record_[1 + 2 * set], &leap = record_[2 + 2 * set];
+            const double spacings = inside.x * float_of(step[0]) + inside.y * float_of(step[1]) +
+                                    float_of(step[2]) +
+                                    static_cast<double>(bucket_column) * float_of(leap[0]) +
+                                    static_cast<double>(bucket_row) * float_of(leap[1]);
+            if (std::abs(spacings - std::round(spacings)) <= double{float_of(record_[0][1])})
+                return true;
+        }
+        return false;
+    }
+
+private:
+    uint32_t mark_count() const { return record_[0][3] & COUNT_BITS_OF_MARKS; }
+
+    static constexpr StyleTexel plain_{};
+    const StyleTexel* record_ = &plain_;
+    double half_width_ = 0.0;
+    int scale_ = 0;
+};
+
+}  // namespace decalgl
