@@ -287,7 +287,7 @@ def dashes_around_corners() -> View:
                 ]
             )
     styles = [
-        StrokeStyle(corner, cap, pattern=dashes(7.3, (0.0, 3.9), (4.7, 6.1), offset=1.1))
+        StrokeStyle(corner, cap, pattern=dashes(7.3, (0.0, 3.9), (4.7, 6.1), offset=1.17))
         for corner in CORNERS
         for cap in CAPS
     ]
