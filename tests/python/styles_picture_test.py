@@ -1,6 +1,7 @@
 """Every scene of styles against the reference: ids and colours at pixel centres, coverage over pixels' areas.
 
-Each style meets each index and each anti-aliasing, and each index each anti-aliasing, in half the combinations.
+Each style meets each index and each anti-aliasing, and each index each anti-aliasing, in half the combinations; what
+coverage sees at its places is looked at in all of them.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import pytest
 
 import decalgl as dg
 import judge
+import rounding
 import styles
 from decalgl import reference as ref
 from shapes import with_features
@@ -30,10 +32,12 @@ FILTERED = [(name, INDEXES[1 - i % 2]) for i, name in enumerate(styles.STYLES)]
 # and as much again for what the shaders compute in 32 bits.
 QUANTA = 2.0
 # Steps of 1/255 that colours may be off: the published index blends a pass at a time into bytes.
-STEPS = {"grid": 1.01, "bvh": 2.1}
+STEPS = {"grid": 1.1, "bvh": 2.1}
 # Crops whose coverage is judged: at its own 32 places in a pixel, and over the area by some samples a pixel each way.
 WIDE_CROP = (160, 90)
 CROP, SAMPLES = (80, 45), 16
+# Metres of a pixel's shorter side that are surely not drawn from levels of detail, which tell more than 32 places.
+NEAR = 0.6
 # Over the partly covered pixels of a crop. Of 32 places with the right answers 0.024 and 0.08 remain on opaque edges.
 RMS, P99 = 0.03, 0.09
 # The lack of alpha where a pixel is covered all over.
@@ -51,12 +55,20 @@ def reach(frame: dg.Frame) -> float:
     return max(judge.LEAST, QUANTA * float(frame.stats.counts["quantum_m"]))
 
 
+def shorter_side(view: View, frame: dg.Frame) -> judge.FloatArray:
+    """The shorter side (h, w) in metres of each pixel's footprint."""
+    surface = judge.own_surface(view, frame).reshape(-1)
+    right, down = judge.sides(view, judge.centres_of(view), surface)
+    shorter = np.minimum(np.linalg.norm(right, axis=1), np.linalg.norm(down, axis=1))
+    return shorter.reshape(frame.depth.shape)
+
+
 @pytest.mark.parametrize(("name", "index"), EXACT)
 def test_ids_are_right(name: str, index: str) -> None:
     view = styles.build(name)
     frame = judge.draw(renderer(index), view)
     assert (frame.ids >= 0).mean() > 0.02
-    wrong, unexplained = judge.unexplained_ids(view, frame, reach(frame))
+    wrong, unexplained = rounding.unexplained_ids(view, frame, reach(frame))
     assert unexplained == 0
     assert wrong <= 2e-3 * frame.ids.size
 
@@ -66,28 +78,31 @@ def test_without_antialiasing_a_pixel_is_the_composite_at_its_centre(name: str, 
     view = styles.build(name)
     frame = judge.draw(renderer(index), view)
     overlay = judge.overlay_of(renderer(index), view, "none")
-    wrong, unexplained = judge.unexplained_colors(view, frame, overlay, reach(frame), STEPS[index])
+    wrong, unexplained = rounding.unexplained_colors(view, frame, overlay, reach(frame), STEPS[index])
     assert unexplained == 0
     assert wrong <= 4e-3 * frame.ids.size
 
 
-@pytest.mark.parametrize(("name", "index"), FILTERED)
+@pytest.mark.parametrize("index", INDEXES)
+@pytest.mark.parametrize("name", styles.STYLES)
 def test_coverage_is_right_at_each_of_its_places(name: str, index: str) -> None:
     view = styles.build(name)
     frame = judge.draw(renderer(index), view)
     x0, y0, x1, y1 = crop = judge.busiest_crop(frame, WIDE_CROP)
-    expected = judge.coverage_of_samples(view, frame, crop)
+    expected = rounding.coverage_of_samples(view, frame, crop)
     got = judge.overlay_of(renderer(index), view, "coverage")[y0:y1, x0:x1]
-    ground = np.isfinite(frame.depth[y0:y1, x0:x1])
-    difference = np.abs(got - expected).max(axis=-1)[ground]
-    assert difference.max() <= 3.1 / 32
+    near = (np.isfinite(frame.depth) & (shorter_side(view, frame) < NEAR))[y0:y1, x0:x1]
+    assert near.mean() > 0.2
+    difference = np.abs(got - expected).max(axis=-1)[near]
+    # Corners of short segments turn when their vertices are rounded.
+    assert difference.max() <= 6.1 / 32
     # A place within a quantum of an edge may fall to either side.
     for angle in np.arange(0.0, 2.0 * np.pi, np.pi / 4):
         if (difference > STEPS[index] / 255).mean() <= 0.005:
             return
         move = reach(frame) * np.array((np.cos(angle), np.sin(angle)))
-        expected = judge.coverage_of_samples(view, frame, crop, (move[0], move[1]))
-        difference = np.minimum(difference, np.abs(got - expected).max(axis=-1)[ground])
+        expected = rounding.coverage_of_samples(view, frame, crop, (move[0], move[1]))
+        difference = np.minimum(difference, np.abs(got - expected).max(axis=-1)[near])
     assert (difference > STEPS[index] / 255).mean() <= 0.005
 
 
@@ -136,7 +151,7 @@ def rounded(view: View, quantum: float) -> Rounded:
 def test_rounding_explains_what_it_does_and_no_more(name: str) -> None:
     view = styles.build(name)
     quantum = 2.0**-9
-    wrong, unexplained = judge.unexplained_ids(view, rounded(view, quantum), QUANTA * quantum)
+    wrong, unexplained = rounding.unexplained_ids(view, rounded(view, quantum), QUANTA * quantum)
     assert wrong > 0
     assert unexplained == 0
-    assert judge.unexplained_ids(view, rounded(view, 10 * quantum), QUANTA * quantum)[1] > 10
+    assert rounding.unexplained_ids(view, rounded(view, 10 * quantum), QUANTA * quantum)[1] > 10

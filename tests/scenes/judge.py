@@ -7,22 +7,16 @@ overlay     premultiplied colour and coverage, told from two pictures: over blac
 
 from __future__ import annotations
 
-import dataclasses
-import re
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from PIL import Image
 
 import decalgl as dg
 from decalgl import reference as ref
-from shapes import repainted, with_features
+from shapes import repainted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from scenes import View
@@ -32,7 +26,6 @@ if TYPE_CHECKING:
     IntArray = NDArray[np.int64]
     Crop = tuple[int, int, int, int]
 
-SHADERS = Path(__file__).resolve().parents[2] / "cpp" / "shaders"
 # Pixels. The rasteriser snaps corners to 1/256, so that a centre this close to a silhouette may see past it.
 SNAP = 0.01
 AROUND = [
@@ -42,8 +35,6 @@ AROUND = [
 ]
 # Of a pixel's footprint, and metres: how exact positions are.
 SHARE, LEAST = 0.01, 1e-5
-# Ways to round a scene that may explain a pixel.
-TRIES = 48
 BLACK = dg.Relief(color="black", strength=0.0)
 WHITE = dg.Relief(color="white", strength=0.0)
 
@@ -91,7 +82,7 @@ def centres_of(view: View) -> FloatArray:
     return ref.pixel_centres((0, 0, *view.size))
 
 
-def _sides(view: View, points: FloatArray, seen: ref.Surface) -> tuple[FloatArray, FloatArray]:
+def sides(view: View, points: FloatArray, seen: ref.Surface) -> tuple[FloatArray, FloatArray]:
     """What a pixel to the right and one down are on the surface's tangent plane, metres in space, both (n, 3)."""
     origin, direction = view.camera.rays(points, view.size)
     normal = np.concatenate([-seen.gradient, np.ones((len(points), 1))], axis=1)
@@ -107,7 +98,7 @@ def _sides(view: View, points: FloatArray, seen: ref.Surface) -> tuple[FloatArra
 
 def footprint(view: View, points: FloatArray, seen: ref.Surface) -> FloatArray:
     """The longer side (n,) in metres of a pixel at points (n, 2) on the surface's tangent plane."""
-    right, down = _sides(view, points, seen)
+    right, down = sides(view, points, seen)
     longest: FloatArray = np.maximum(np.linalg.norm(right, axis=1), np.linalg.norm(down, axis=1))
     return longest
 
@@ -200,89 +191,6 @@ def own_surface(view: View, frame: IdsSeen) -> ref.Surface:
     return ref.Surface(frame.world, frame.depth.astype(np.float64), gradient.reshape(*frame.depth.shape, 2))
 
 
-def shaken(scene: dg.Scene, reach: float, seed: int) -> dg.Scene:
-    """The scene with every vertex moved by up to `reach` metres in x and in y, equal ones alike."""
-    tables = []
-    for layer in scene.layers:
-        table = layer.features
-        places, which = np.unique(table.coords, axis=0, return_inverse=True)
-        places += np.random.default_rng([0, seed]).uniform(-reach, reach, places.shape)
-        coords = places[which.reshape(-1)]
-        tables.append(dataclasses.replace(table, coords=coords))
-    return with_features(scene, tables)
-
-
-def unexplained(
-    view: View,
-    surface: ref.Surface,
-    reach: float,
-    is_right: Callable[[dg.Scene, ref.Surface, IntArray], BoolArray],
-) -> IntArray:
-    """Which of a surface's positions (n,) look wrong however their vertices and they themselves are rounded.
-
-    reach: metres that rounding moves a vertex or a position by at most. is_right: whether positions, moved, look
-    right in a scene; with the indices of those that are asked about. A dash's end, a corner of a short segment and a
-    mitre's tip move farther than the vertices do, and farther than any distance to an edge tells.
-    """
-    left = np.arange(len(surface.depth))
-    for seed in range(TRIES):
-        if not len(left):
-            break
-        nearer = reach * (1 + seed % 8) / 8
-        moves = np.random.default_rng([1, seed]).uniform(-nearer, nearer, (len(left), 2))
-        moved = surface[left]
-        world = moved.world + np.column_stack([moves, np.zeros(len(left))])
-        _, gradient = surface_below(view.scene, world[:, :2])
-        moved = ref.Surface(world, moved.depth, gradient)
-        left = left[~is_right(shaken(view.scene, nearer, seed), moved, left)]
-    return left
-
-
-def unexplained_ids(view: View, frame: IdsSeen, reach: float) -> tuple[int, int]:
-    """How many of a frame's ids are not the reference's at its own positions, and how many no rounding explains."""
-    surface = own_surface(view, frame)
-    expected = ref.render_ids(view.scene, view.camera, view.size, surface=surface, distances=False)
-    wrong = np.nonzero((frame.ids != expected.ids) | (frame.layers != expected.layers))
-    ids, layers = frame.ids[wrong], frame.layers[wrong]
-
-    def is_right(scene: dg.Scene, moved: ref.Surface, which: IntArray) -> BoolArray:
-        crop = (0, 0, len(which), 1)
-        found = ref.render_ids(
-            scene, view.camera, view.size, crop, surface=moved.reshape(1, -1), distances=False
-        )
-        right: BoolArray = (found.ids[0] == ids[which]) & (found.layers[0] == layers[which])
-        return right
-
-    return len(ids), len(unexplained(view, surface[wrong], reach, is_right))
-
-
-def composite_of(view: View, scene: dg.Scene, surface: ref.Surface) -> FloatArray:
-    """The reference's colours (n, 4) of a scene at positions (n,) of the view."""
-    slopes = ref.slopes_of(scene, view.camera, view.size, surface)
-    return ref.composite(scene, surface.world[..., :2].reshape(-1, 2), slopes)
-
-
-def unexplained_colors(
-    view: View, frame: dg.Frame, overlay: FloatArray, reach: float, steps: float = 1.01
-) -> tuple[int, int]:
-    """The same of an overlay (h, w, 4) without anti-aliasing, whose channels may be some steps of 1/255 off."""
-    surface = own_surface(view, frame)
-    surface = surface.reshape(-1)
-    ground = np.isfinite(surface.depth)
-    flat = overlay.reshape(-1, 4)
-
-    def is_off(scene: dg.Scene, seen: ref.Surface, colors: FloatArray) -> BoolArray:
-        off: BoolArray = np.abs(composite_of(view, scene, seen) - colors).max(axis=-1) > steps / 255
-        return off
-
-    wrong = np.flatnonzero(ground)[is_off(view.scene, surface[ground], flat[ground])]
-    left = unexplained(
-        view, surface[wrong], reach,
-        lambda scene, moved, which: ~is_off(scene, moved, flat[wrong[which]]),
-    )  # fmt: skip
-    return len(wrong), len(left)
-
-
 def overlay_of(renderer: dg.Renderer, view: View, antialias: str) -> FloatArray:
     """What the layers add, premultiplied, (height, width, 4) from 0 to 1, in steps of 1/255. Sky is covered."""
     over_black = draw(renderer, view, antialias, BLACK).image[..., :3] / 255.0
@@ -345,7 +253,7 @@ def folded(view: View, crop: Crop, seen: ref.Surface, samples: int) -> BoolArray
     points = ref.sample_points(crop, samples).reshape(-1, 2)
     centres = ref.pixel_centres(crop)
     middle = ref.raycast(view.scene, view.camera, view.size, centres)
-    right, down = (np.repeat(side[:, :2], samples**2, axis=0) for side in _sides(view, centres, middle))
+    right, down = (np.repeat(side[:, :2], samples**2, axis=0) for side in sides(view, centres, middle))
     apart = (seen.world.reshape(-1, 3) - np.repeat(middle.world, samples**2, axis=0))[:, :2]
     offset = points - np.repeat(centres, samples**2, axis=0)
     area = right[:, 0] * down[:, 1] - right[:, 1] * down[:, 0]
@@ -383,54 +291,3 @@ def eroded(mask: BoolArray, pixels: int) -> BoolArray:
             inner &= np.roll(result, shift, axis=(0, 1))
         result = inner
     return result
-
-
-def sample_offsets() -> FloatArray:
-    """Where in a pixel antialias="coverage" looks (samples, 2), to the right and up from the centre."""
-    text = (SHADERS / "shared" / "sample_offsets.glsl").read_text(encoding="utf-8")
-    pairs = re.findall(r"vec2\(([-.\d]+), ([-.\d]+)\)", text)
-    return np.array(pairs, dtype=np.float64)
-
-
-def coverage_of_samples(
-    view: View, frame: dg.Frame, crop: Crop, moved: tuple[float, float] = (0.0, 0.0)
-) -> FloatArray:
-    """The reference's mean colour (h, w, 4) of the places where antialias="coverage" looks, on the pixels' planes.
-
-    moved: by how many metres, as rounding may move the map.
-
-    What differs from it is a wrong answer at some place, whereas the mean over the whole area differs from it by what
-    so few places can tell.
-    """
-    x0, y0, x1, y1 = crop
-    surface = own_surface(view, frame)[y0:y1, x0:x1].reshape(-1)
-    right, down = _sides(view, ref.pixel_centres(crop), surface)
-    total = np.zeros((len(surface.depth), 4))
-    offsets = sample_offsets()
-    for x, y in offsets:
-        there = dataclasses.replace(surface, world=surface.world + x * right - y * down + (*moved, 0.0))
-        total += composite_of(view, view.scene, there)
-    return (total / len(offsets)).reshape(y1 - y0, x1 - x0, 4)
-
-
-def write_pictures(
-    renderer: dg.Renderer, view: View, antialias: str, folder: Path, name: str, samples: int = 8
-) -> None:
-    """Writes what the renderer draws, what the reference does, and 8 times the difference, as PNG files to look at."""
-    got = overlay_of(renderer, view, antialias)
-    if antialias == "none":
-        surface = own_surface(view, draw(renderer, view)).reshape(-1)
-        expected = composite_of(view, view.scene, surface).reshape(got.shape)
-    else:
-        expected = ref.render_overlay(view.scene, view.camera, view.size, samples=samples).rgba
-    folder.mkdir(parents=True, exist_ok=True)
-    paper = np.full(3, 0.93)
-    for label, overlay in (("renderer", got), ("reference", expected)):
-        _write_png(
-            folder / f"{name}-{antialias}-{label}.png", overlay[..., :3] + (1 - overlay[..., 3:]) * paper
-        )
-    _write_png(folder / f"{name}-{antialias}-difference.png", 8 * np.abs(got - expected)[..., :3])
-
-
-def _write_png(path: Path, colors: FloatArray) -> None:
-    Image.fromarray(np.rint(255 * np.clip(colors, 0.0, 1.0)).astype(np.uint8)).save(path)
