@@ -17,6 +17,7 @@ namespace {
 const std::string integers = "technique/static_bvh/integers.glsl";
 const std::string tree = "technique/static_bvh/tree.glsl";
 const std::string strokes = "technique/static_bvh/strokes.glsl";
+const std::string quad_trees = "technique/static_bvh/quad_trees.glsl";
 
 class Dice {
 public:
@@ -116,5 +117,30 @@ TEST_CASE("distances from segments of any length are good to a quantum") {
     for (size_t i = 0; i < results.size(); ++i) {
         INFO("case " << i);
         REQUIRE(std::abs(double{results[i].x} - expected[i]) <= 0.2 + 1e-6 * expected[i]);
+    }
+}
+
+TEST_CASE("turns of a hatch are counted with 64 bits") {
+    OnePixel shader({quad_trees}, 4,
+                    read_integers +
+                        "ivec4 other = ivec4(input2) * 65536 + ivec4(input3);\n"
+                        "uint phase = turned(uvec2(whole.xy), uint(other.x));\n"
+                        "result.xy = vec2(phase >> 16, phase & 65535u);\n",
+                    {"HATCHES"});
+    Dice dice(6);
+    std::vector<vec4> values;
+    std::vector<uint32_t> expected;
+    for (int i = 0; i < 5000; ++i) {
+        const int32_t step[4] = {dice.up_to(INT32_MAX), dice.up_to(INT32_MAX), 0, 0};
+        const int32_t count[4] = {std::abs(dice.up_to(1 << 30)), 0, 0, 0};
+        add_case(values, step);
+        add_case(values, count);
+        const uint64_t turn = uint64_t{static_cast<uint32_t>(step[0])} << 32 | static_cast<uint32_t>(step[1]);
+        expected.push_back(static_cast<uint32_t>(turn * static_cast<uint64_t>(count[0]) >> 32));
+    }
+    const std::vector<vec4> results = shader.run(values);
+    for (size_t i = 0; i < results.size(); ++i) {
+        REQUIRE(results[i].x == static_cast<float>(expected[i] >> 16));
+        REQUIRE(results[i].y == static_cast<float>(expected[i] & 65535));
     }
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ import judge
 import scenes
 import shapes
 from decalgl import reference as ref
+from decalgl.strokes import Stroke, StrokeStyle
 from scenes import View
 from small_scenes import MAP, SIZE, draw, flat_scene
 
@@ -200,6 +202,95 @@ def test_translucent_lines_along_a_curve() -> None:
     with pytest.raises(dg.UnsupportedError, match=r"translucent lines.*composition=\"nearest\""):
         draw(scene, index=dg.BvhIndex(segment_order="hilbert"))
     assert (draw(scene, index="thoeny").ids == 0).any()
+
+
+# Coverage
+
+
+def test_layers_over_each_other_show_the_upper_one_alone() -> None:
+    """Where edges of two layers are the same, the mean is that of the composite."""
+    cover = shapes.partition((10.0, 10.0, 90.0, 90.0), 7, 6, seed=3)
+    one, both = flat_scene(), flat_scene()
+    both.add_polygons(cover, color="lime")
+    for scene in (one, both):
+        scene.add_polygons(cover, color="red")
+    size, camera = (83, 83), dg.Camera.top_down((0.0, 0.0, 100.0, 100.0))
+    pictures = [draw(scene, camera, size, index="bvh", antialias="coverage").image for scene in (one, both)]
+    np.testing.assert_array_equal(*pictures)
+
+
+def line_coverage(width: float, **options: Any) -> FloatArray:
+    """Coverage (100,) down a column of metres, of a level line through the middle of one; `width` in pixels."""
+    scene = flat_scene()
+    scene.add_lines(
+        (np.array([[-50.0, 60.5], [150.0, 60.5]]), [0, 2]), width=width, width_units="m", color="black"
+    )
+    bare, drawn = (
+        draw(each, antialias="coverage", **options).image[:, 50, 0].astype(float)
+        for each in (flat_scene(), scene)
+    )
+    coverage: FloatArray = 1.0 - drawn / bare
+    return coverage
+
+
+@pytest.mark.parametrize("index", ["bvh", "thoeny"])
+@pytest.mark.parametrize("width", [0.05, 0.5, 1.0, 4.0])
+def test_lines_thinner_than_a_pixel_fade(index: str, width: float) -> None:
+    coverage = line_coverage(width, index=index, coverage="thoeny")
+    assert coverage.sum() == pytest.approx(width, abs=0.01)
+    assert coverage[39] == pytest.approx(min(width, 1.0), abs=0.005)
+    assert (coverage > 0.002).sum() == (1 if width <= 1.0 else 5)
+
+
+def test_polygons_stay_exact_below_lines_by_coverage() -> None:
+    scene = flat_scene()
+    scene.add_polygons([box(20.3, 20.3, 60.7, 60.7)], color="teal")
+    exact = draw(scene, index="bvh", antialias="coverage")
+    scene.add_lines(
+        (np.array([[5.0, 90.0], [80.0, 90.5]]), [0, 2]), width=0.7, width_units="m", color="black"
+    )
+    both = draw(scene, index="bvh", antialias="coverage", coverage="thoeny")
+    np.testing.assert_array_equal(both.image[30:], exact.image[30:])
+    assert "static_bvh[THOENY]" in both.stats.variants
+
+
+def test_coverage_is_one_that_there_is() -> None:
+    with pytest.raises(dg.InputError, match="There is no coverage='msaa'; choose 'exact' or 'thoeny'"):
+        dg.Renderer(coverage="msaa", index="bvh")
+    with pytest.raises(dg.UnsupportedError, match="Coverage 'thoeny' is not drawn with index 'grid'"):
+        dg.Renderer(coverage="thoeny")
+
+
+# Styles
+
+
+def styled(mode: str, style: StrokeStyle) -> dg.Scene:
+    """A square of teal from 30 to 70 m with a red outline of 10 m."""
+    scene = flat_scene()
+    layer = scene.add_polygons([box(30, 30, 70, 70)], color="teal")
+    stroke = Stroke(np.array([[255, 0, 0, 255]], dtype=np.uint8), np.array([10.0]), (style,))
+    scene._layers[0] = dataclasses.replace(layer, stroke=stroke, outline_mode=mode)
+    return scene
+
+
+@pytest.mark.parametrize(("mode", "low", "high"), [("inset", 30, 40), ("normal", 25, 35), ("offset", 20, 30)])
+@pytest.mark.parametrize("corner", ["miter", "round", "bevel"])
+def test_outlines_lie_where_their_mode_and_corner_say(mode: str, low: int, high: int, corner: Any) -> None:
+    frame = draw(styled(mode, StrokeStyle(corner=corner)), index="bvh")
+    red = (frame.image[::-1] == (255, 0, 0, 255)).all(axis=-1)  # row 0 at the bottom
+    assert red[50, low:high].all()
+    assert not red[50, high]
+    assert not red[50, low - 1]
+    # The outer corner's own square metre.
+    assert red[low, low] == (corner == "miter" or mode == "inset")
+    assert frame.pick(50, 50)[0].row == 0
+
+
+def test_shaders_have_what_styles_ask_for() -> None:
+    plain = draw(styled("normal", StrokeStyle()), index="bvh")
+    assert {name for name in plain.stats.variants if "bvh" in name} == {"static_bvh", "static_bvh[RINGS]"}
+    mitred = draw(styled("inset", StrokeStyle(corner="miter")), index="bvh")
+    assert {name for name in mitred.stats.variants if "bvh" in name} == {"static_bvh[BOTH,CORNERS,INSET]"}
 
 
 # Options
