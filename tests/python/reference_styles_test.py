@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from decalgl import reference as ref
 from decalgl.reference.areas import feature_area
-from decalgl.strokes import ColorBand, HatchPattern, LinePattern, PatternMark
+from decalgl.strokes import ColorBand, Hatch, LinePattern, PatternMark
 from reference_scenes import (
     Fill,
     Layer,
@@ -315,7 +315,7 @@ def test_casings_lie_under_all_strokes_and_outlines_where_told() -> None:
 def test_hatches(angle: float, crossed: bool) -> None:
     layer = make_layer("polygons", [[square(-20, -20, 40)], [square(30, 0, 5)]])
     assert layer.fill is not None
-    layer.fill = Fill(layer.fill.colors, (HatchPattern(4.0, 1.0, angle, crossed), None), np.array([0, 1]))
+    layer.fill = Fill(layer.fill.colors, (Hatch(4.0, 1.0, angle, crossed), None), np.array([0, 1]))
     xy = np.random.default_rng(2).uniform(-25, 40, (5000, 2))
     along = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
     across = np.array([-along[1], along[0]])
@@ -399,7 +399,7 @@ def test_edge_distance_knows_dashes_bands_and_hatches() -> None:
     ]  # fmt: skip
     hatched = make_layer("polygons", [[square(0, 0, 20)]])
     assert hatched.fill is not None
-    hatched.fill.hatches = (HatchPattern(4.0, 1.0, 0.0),)
+    hatched.fill.hatches = (Hatch(4.0, 1.0, 0.0),)
     cases.append((hatched, {(10, 10): 1.5, (10, 8.25): 0.25, (19.9, 10): 0.1, (21, 8.25): 1}))
     for layer, expected in cases:
         scene.layers = [layer]

@@ -11,7 +11,7 @@ import decalgl as dg
 from decalgl.strokes import (
     ColorBand,
     Fill,
-    HatchPattern,
+    Hatch,
     LinePattern,
     PatternMark,
     Stroke,
@@ -60,7 +60,7 @@ def stroke(
     )
 
 
-def fill(count: int, color: Any, hatches: Sequence[HatchPattern | None] | None = None) -> Fill:
+def fill(count: int, color: Any, hatches: Sequence[Hatch | None] | None = None) -> Fill:
     """Fills of `count` features: one colour for all or one each; several hatches go round by turns."""
     if hatches is None:
         return Fill(_bytes(count, color))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 import decalgl as dg
-from decalgl.strokes import HatchPattern, StrokeStyle
+from decalgl.strokes import Hatch, StrokeStyle
 from shapes import circle, flat_terrain, nested_rings, partition, star, tints, uneven_terrain, walk
 from styled import (
     BANDS,
@@ -444,8 +444,8 @@ def outlines_of_neighbours() -> View:
 def hatches() -> View:
     """Level, upright, slanting and crossed, wide and far below a pixel."""
     scene = flat_ground()
-    found: list[HatchPattern | None] = [
-        HatchPattern(spacing, 0.4 * spacing, angle, crossed)
+    found: list[Hatch | None] = [
+        Hatch(spacing, 0.4 * spacing, angle, crossed)
         for spacing, crossed in ((3.0, False), (5.0, True), (0.3, False))
         for angle in (0.0, 45.0, 90.0, 30.0)
     ]
@@ -461,7 +461,7 @@ def hatches_aslant() -> View:
     """Hatches over even fills, seen obliquely on uneven ground."""
     scene = dg.Scene(uneven_terrain(100.0, 10.0))
     cells = [[np.asarray(cell.exterior.coords)[:-1]] for cell in partition((-90, -90, 90, 90), 6, 6)]
-    found = [None, HatchPattern(6.0, 1.5, 30.0), HatchPattern(8.0, 2.0, 45.0, True)]
+    found = [None, Hatch(6.0, 1.5, 30.0), Hatch(8.0, 2.0, 45.0, True)]
     styled(scene, "polygons", cells, fill=fill(36, (0.9, 0.8, 0.5)))
     styled(scene, "polygons", cells, fill=fill(36, tints(36, 40, 0.8), found))
     return aslant(scene)

@@ -11,8 +11,8 @@ const int most_decals = 8;
 // Topmost first.
 struct Layers {
     uint slots[most_decals];
-    vec4 colors[most_decals];  // premultiplied; of strokes by their coverage
-    uint masks[most_decals];   // samples, of fills
+    vec4 colors[most_decals];  // of strokes: premultiplied, by their coverage
+    uint masks[most_decals];   // samples, of fills and of cells that a stroke covers
 };
 
 void keep(inout Layers layers, uint slot, vec4 color, uint mask) {
@@ -112,13 +112,12 @@ void end_group(inout Layers layers, inout uint open, Group group, Nearest part, 
     float seen = float(bitCount(open & inside)) / max(float(bitCount(inside)), 1.0);
     if (open == all_samples) seen = 1.0;
     if (group.line) {
-        if (group.covered != 0u) part.reach = 0.0;
+        uint mask = group.covered & inside & open;
         vec4 color = seen * covered_color(group.style, group.slot, part, group.foot);
-        if (color.a > 0.0) keep(layers, group.slot, color, 0u);
+        if (color.a > 0.0 || mask != 0u) keep(layers, group.slot, color, mask);
     } else {
-        vec4 straight = color_of(group.slot);
         uint mask = group.covered & inside & shown_samples(group, cell, local, foot);
-        if (mask != 0u) keep(layers, group.slot, vec4(straight.rgb * straight.a, straight.a), mask);
+        if (mask != 0u) keep(layers, group.slot, vec4(0.0), mask);
     }
     open = all_samples;
 }
@@ -172,8 +171,10 @@ vec4 composite_thoeny(LatticePosition centre, mat2 foot) {
     } while ((place.y >> bits) <= (high.y >> bits));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < most_decals; ++i) {
-        float share = layers.masks[i] == 0u ? 1.0 : float(bitCount(layers.masks[i])) / float(sample_count);
-        sum += (1.0 - sum.a) * share * layers.colors[i];
+        vec4 color = layers.colors[i];
+        vec4 straight = layers.masks[i] == 0u ? vec4(0.0) : color_of(layers.slots[i]);
+        float sampled = straight.a * float(bitCount(layers.masks[i])) / float(sample_count);
+        sum += (1.0 - sum.a) * (sampled > color.a ? sampled * vec4(straight.rgb, 1.0) : color);
     }
     return sum;
 }
