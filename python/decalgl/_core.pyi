@@ -134,6 +134,7 @@ class Renderer:
         rectangle: int,
         index: str,
         bvh: dict[str, Any],
+        samples: int,
     ) -> None: ...
     def set_picture(self, width: int, height: int, antialias: str) -> None: ...
     def preprocess(

@@ -19,7 +19,7 @@ from ._colors import parse_color
 from ._core_scene import core_scene
 from ._raster import check_memory
 from .camera import checked_size
-from .errors import CancelledError, InputError, UnsupportedError, warn
+from .errors import CancelledError, InputError, warn
 from .frame import Frame, PreparedLayer
 from .indexes import BvhIndex, resolve_index
 
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     Rgba = tuple[float, float, float, float]
     Progress = Callable[[str, float], bool | None]
 
-ANTIALIAS = ("none", "coverage")
-PLANNED_ANTIALIAS = ("msaa", "ssaa", "fxaa")
+ANTIALIAS = ("none", "coverage", "ssaa", "msaa", "fxaa")
+SAMPLES = (1, 2, 4, 8, 16, 32)
 BACKENDS = ("auto", "egl", "osmesa")
 # At the horizon, and 45 degrees above it.
 SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))
@@ -51,16 +51,18 @@ class Renderer:
     """Draws scenes in a GL context of its own, which opens with the first `update`.
 
     size: (width, height) of the picture in pixels.
-    antialias: "coverage" (each pixel shows the mean over its area) or "none" (its centre).
+    antialias: "coverage" (each pixel shows the mean over its area), "none" (its centre), "ssaa" or "msaa" (the mean of
+        samples, each a whole picture; the second with the driver's samples) or "fxaa" (smoothed afterwards).
     terrain_error: pixels on the screen that the terrain's level of detail may be off; 0 draws every sample.
     memory_limit: bytes for prepared data and GL objects together; None: no limit.
     backend: "auto", "egl" or "osmesa".
     threads: for preprocessing; None: all cores.
     tile: larger pictures are drawn in squares of this many pixels; None: chosen. The picture is the same.
     index: of static layers, "grid" (the faster one), "bvh", "thoeny" or a `BvhIndex`: see `decalgl.indexes`.
+    samples: a pixel, of "ssaa" and "msaa": 1, 2, 4, 8, 16 or 32.
 
     Call everything but `preprocess`, `save` and `open` from one thread. A call that fails leaves the renderer usable.
-    Raises InputError for arguments out of range, UnsupportedError for what this version does not draw.
+    Raises InputError for arguments out of range.
     """
 
     def __init__(
@@ -73,6 +75,7 @@ class Renderer:
         threads: int | None = None,
         tile: int | None = None,
         index: str | BvhIndex = "grid",
+        samples: int = 8,
     ) -> None:
         if backend not in BACKENDS:
             raise InputError(f"There is no backend {backend!r}; choose 'auto', 'egl' or 'osmesa'.")
@@ -85,6 +88,7 @@ class Renderer:
             "threads": threads,
             "tile": tile,
             "index": index,
+            "samples": samples,
         }
         self.antialias = antialias
         self._core = _core.Renderer(
@@ -98,6 +102,7 @@ class Renderer:
             rectangle=_checked_count(tile, "tile", "pixels", LARGEST_SIDE),
             index=core_index,
             bvh=bvh.to_dict(),
+            samples=_checked_samples(samples),
         )
         self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
@@ -224,6 +229,7 @@ DEFAULT_OPTIONS = {
     "threads": None,
     "tile": None,
     "index": "grid",
+    "samples": 8,
 }
 
 
@@ -282,13 +288,17 @@ def _checked_picture(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def _checked_antialias(antialias: str) -> str:
-    if antialias in PLANNED_ANTIALIAS:
-        raise UnsupportedError(
-            f"antialias={antialias!r} is not drawn by this version; use 'coverage' or 'none'."
-        )
     if antialias not in ANTIALIAS:
-        raise InputError(f"There is no antialias={antialias!r}; choose 'coverage' or 'none'.")
+        known = ", ".join(repr(one) for one in ANTIALIAS)
+        raise InputError(f"There is no antialias={antialias!r}; choose one of {known}.")
     return antialias
+
+
+def _checked_samples(samples: Any) -> int:
+    if samples not in SAMPLES:
+        known = ", ".join(str(count) for count in SAMPLES)
+        raise InputError(f"samples must be one of {known}, but it is {samples!r}.")
+    return int(samples)
 
 
 def _checked_error(value: Any) -> float:

@@ -80,14 +80,21 @@ public:
     virtual void save(ArchiveWriter& archive, const std::string& prefix) const = 0;
 };
 
-enum class Antialias { none, coverage };
+// What a pixel shows of the picture.
+enum class Antialias {
+    none,      // its centre
+    coverage,  // the mean over its area, worked out by the techniques
+    ssaa,      // the mean of samples, each a whole picture
+    msaa,      // the same, with the driver's samples as far as they go
+    fxaa       // its centre, smoothed along the edges that the picture shows
+};
 
 // Where the camera looks; the uniform block of every pass is bound already (shaders/shared/view_block.h).
 struct View {
     int width = 0;  // of the whole picture, in pixels
     int height = 0;
     PositionGrid positions;
-    Antialias antialias = Antialias::none;
+    Antialias antialias = Antialias::none;  // none or coverage: the others are made of pictures without
     double widest_pixel = 0.0;  // metres that the farthest pixel is wide, seen head-on
 };
 

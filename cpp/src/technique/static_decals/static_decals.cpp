@@ -89,7 +89,7 @@ void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::Progra
         flags.insert("ONE_COLOR");
     if (view.antialias == Antialias::coverage)
         flags.insert("COVERAGE");
-    if (draws_levels_)
+    if (draws_levels_ && view.antialias == Antialias::coverage)
         flags.insert("LEVELS");
     draw_full_screen(std::move(flags), gbuffer, programs);
 }
