@@ -1,7 +1,7 @@
 // Where a ray meets the terrain: a walk over the cells below it, on the surface that is drawn but for its seams.
 //
 // In a cell the surface is two triangles, so the ray's height above it is linear between the cell's border, its
-// diagonal and its border again. It meets the ground where that height passes zero from above.
+// diagonal and its border again. It meets the ground where that height passes zero.
 //
 //     o---------o---------o
 //     |  \      |    \    |
@@ -22,7 +22,6 @@ struct Walk {
     vec2 along;
     float height;  // of the ray at the start, relative to the base, and for one metre
     float rise;
-    float side;  // 1 where the surface is seen from above, else -1
 };
 
 bool is_cell(ivec2 first) {
@@ -65,7 +64,7 @@ float height_above(Walk walk, Triangle t, Cell cell, float metres) {
     vec2 place = (walk.start + metres * walk.along - vec2(cell.low - base_sample.xy)) * spacing.xy;
     vec2 gradient = gradient_of(t);
     float ground = t.a.z + gradient.x * place.x - gradient.y * place.y;
-    return walk.side * (walk.height + metres * walk.rise - ground);
+    return walk.height + metres * walk.rise - ground;
 }
 
 const int nothing_met = 0;  // as far as was asked
@@ -74,14 +73,16 @@ const int not_known = 2;  // it is too far for `most_cells`
 
 const int most_cells = 32;
 
-// Walks along a ray from one distance to another; the triangle that it meets there, if any.
-int march(vec3 origin, vec3 direction, float from, float until, float side, out Triangle met) {
+// Walks along a ray from one distance to another; the triangle that it meets there from above, if any, or also one
+// that it meets from below: the walk may begin below ground that other rays see.
+int march(vec3 origin, vec3 direction, float from, float until, bool also_below, out Triangle met) {
     vec3 begin = origin + from * direction;
     Walk walk = Walk(vec2(begin.x, -begin.y) / spacing.xy + base_sample_fraction.xy,
-                     vec2(direction.x, -direction.y) / spacing.xy, begin.z, direction.z, side);
+                     vec2(direction.x, -direction.y) / spacing.xy, begin.z, direction.z);
     Cell cell = cell_of(base_sample.xy + ivec2(floor(walk.start)));
     float entered = 0.0;
-    float above = -1.0;  // at the end of the last piece
+    float height = 0.0;  // above the ground at the end of the last piece
+    bool on_ground = false;
     bool found = false;
     int turn = 0;
     do {
@@ -100,14 +101,17 @@ int march(vec3 origin, vec3 direction, float from, float until, float side, out 
             float last = piece == 0 && crosses ? middle : left;
             Triangle t = triangle_of(cell, (piece == 0) == south);
             bool solid = is_cell(cell.low) && !is_missing(t);
-            float before = max(above, height_above(walk, t, cell, first));
+            float before = on_ground ? height : height_above(walk, t, cell, first);
             float after = height_above(walk, t, cell, last);
             bool counts = !found && (piece == 0 || crosses);
-            if (counts && solid && before > 0.0 && after <= 0.0) {
+            bool falls = before > 0.0 && after <= 0.0;
+            bool rises = before < 0.0 && after >= 0.0;
+            if (counts && solid && (falls || (rises && also_below))) {
                 met = t;
                 found = true;
             }
-            if (counts) above = solid ? after : -1.0;
+            height = counts ? after : height;
+            on_ground = counts ? solid : on_ground;
         }
         cell = next_cell(walk, cell, out_at);
         entered = left;
