@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from . import _core
+from ._antialias import checked_antialias, checked_samples
 from ._colors import parse_color
 from ._core_scene import core_scene
 from ._raster import check_memory
@@ -35,8 +36,6 @@ if TYPE_CHECKING:
     Rgba = tuple[float, float, float, float]
     Progress = Callable[[str, float], bool | None]
 
-ANTIALIAS = ("none", "coverage", "ssaa", "msaa", "fxaa")
-SAMPLES = (1, 2, 4, 8, 16, 32)
 BACKENDS = ("auto", "egl", "osmesa")
 # At the horizon, and 45 degrees above it.
 SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))
@@ -94,7 +93,7 @@ class Renderer:
         self._core = _core.Renderer(
             width=width,
             height=height,
-            antialias=_checked_antialias(antialias),
+            antialias=checked_antialias(antialias),
             terrain_error=_checked_error(terrain_error),
             memory_limit=_checked_count(memory_limit, "memory_limit", "bytes", 2**63),
             backend=backend,
@@ -102,7 +101,7 @@ class Renderer:
             rectangle=_checked_count(tile, "tile", "pixels", LARGEST_SIDE),
             index=core_index,
             bvh=bvh.to_dict(),
-            samples=_checked_samples(samples),
+            samples=checked_samples(samples),
         )
         self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
@@ -117,7 +116,7 @@ class Renderer:
     def set_picture(self, size: tuple[int, int], antialias: str) -> None:
         """The size and anti-aliasing of the pictures from the next `update` on."""
         width, height = _checked_picture(size)
-        self._core.set_picture(width, height, _checked_antialias(antialias))
+        self._core.set_picture(width, height, checked_antialias(antialias))
         self.antialias = antialias
         self.size = (width, height)
 
@@ -285,20 +284,6 @@ def _checked_picture(size: tuple[int, int]) -> tuple[int, int]:
     if max(width, height) > LARGEST_SIDE:
         raise InputError(f"size must be at most {LARGEST_SIDE} pixels a side, but it is {size!r}.")
     return width, height
-
-
-def _checked_antialias(antialias: str) -> str:
-    if antialias not in ANTIALIAS:
-        known = ", ".join(repr(one) for one in ANTIALIAS)
-        raise InputError(f"There is no antialias={antialias!r}; choose one of {known}.")
-    return antialias
-
-
-def _checked_samples(samples: Any) -> int:
-    if samples not in SAMPLES:
-        known = ", ".join(str(count) for count in SAMPLES)
-        raise InputError(f"samples must be one of {known}, but it is {samples!r}.")
-    return int(samples)
 
 
 def _checked_error(value: Any) -> float:

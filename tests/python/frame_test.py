@@ -244,7 +244,7 @@ def test_nothing_runs_that_the_scene_does_not_need() -> None:
     opaque.add_polygons([square])
     needed = {"terrain", "compose", "static_decals", "OVERLAY", "RINGS"}
     assert variants(opaque) == needed | {"ONE_COLOR"}
-    assert variants(opaque, antialias="coverage", tile=512) == needed | {"COVERAGE", "LEVELS"}
+    assert variants(opaque, antialias="coverage", tile=512) == needed | {"COVERAGE", "LEVELS", "silhouettes"}
     colourful = flat_scene()
     colourful.add_polygons([square, line.buffer(1)], color=["red", "green"])
     assert variants(colourful) == needed

@@ -53,7 +53,10 @@ void Pipeline::draw_picture(const Piece& piece) {
             draw_samples(piece);
             break;
         case Antialias::msaa:
-            draw_multisamples(piece);
+            if (targets_->needs.multisamples > 0)
+                draw_multisamples(piece);
+            else
+                draw_samples(piece);
             break;
         case Antialias::fxaa:
             draw_centres(piece);
@@ -140,12 +143,13 @@ void Pipeline::draw_samples(const Piece& piece) {
     show_mean(options_.samples);
 }
 
-// More samples than the driver has are its pattern, moved by a pattern as large as one of its strata.
+// More samples than the driver has are its pattern, moved by a pattern of half a pixel: less leaves the samples in
+// heaps, and more spreads them beyond the pixel.
 void Pipeline::draw_multisamples(const Piece& piece) {
     const int at_once = targets_->needs.multisamples;
     targets_->sum_framebuffer.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
     for (const glm::vec2 offset : sample_pattern(options_.samples / at_once)) {
-        const glm::vec2 jitter = offset / static_cast<float>(at_once);
+        const glm::vec2 jitter = 0.5F * offset;
         set_sample(piece, jitter);
         targets_->multisampled.begin();
         const std::vector<glm::vec2> places = driver_pattern(at_once);

@@ -1,8 +1,11 @@
 #include "frame/pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "decalgl/core/error.h"
@@ -128,19 +131,20 @@ void Pipeline::choose_pieces() {
     }
 }
 
-// The samples a pixel that the driver draws at once: as many of those asked for as it can.
+// The most samples a pixel that the driver draws at once and that divide those asked for; 0 where it has none.
 int Pipeline::multisamples() const {
-    int most = 1;
-    for (const GLenum limit :
-         {GL_MAX_INTEGER_SAMPLES, GL_MAX_COLOR_TEXTURE_SAMPLES, GL_MAX_DEPTH_TEXTURE_SAMPLES}) {
-        GLint samples = 1;
-        glGetIntegerv(limit, &samples);
-        most = limit == GL_MAX_INTEGER_SAMPLES ? samples : std::min<int>(most, samples);
+    std::set<GLint> counts;
+    for (int count = 2; count <= options_.samples; count *= 2)
+        counts.insert(count);
+    for (const GLenum format : {GL_RGBA32UI, GL_RGBA32F, GL_RGBA8, GL_DEPTH_COMPONENT32F}) {
+        std::array<GLint, 16> supported{};
+        glGetInternalformativ(GL_TEXTURE_2D_MULTISAMPLE, format, GL_SAMPLES, supported.size(),
+                              supported.data());
+        for (auto count = counts.begin(); count != counts.end();)
+            count = std::count(supported.begin(), supported.end(), *count) > 0 ? std::next(count)
+                                                                               : counts.erase(count);
     }
-    int count = 1;
-    while (2 * count <= std::min(most, options_.samples))
-        count *= 2;
-    return count;
+    return counts.empty() ? 0 : *counts.rbegin();
 }
 
 void Pipeline::make_targets() {

@@ -29,7 +29,7 @@ Targets::Targets(const TargetNeeds& needed, const MemoryAccount& memory)
     };
     if (needs.antialias == Antialias::ssaa || needs.antialias == Antialias::msaa)
         make("sum", GL_RGBA32F, sum, sum_framebuffer);
-    if (needs.antialias == Antialias::msaa)
+    if (needs.multisamples > 0)
         multisampled = GBuffer(needs.width, needs.height, memory, needs.multisamples);
     if (needs.antialias == Antialias::fxaa)
         make("composed", GL_RGBA8, composed, composed_framebuffer);

@@ -26,7 +26,7 @@ struct TargetNeeds {
     int width = 0;
     int height = 0;
     Antialias antialias = Antialias::none;
-    int multisamples = 0;  // samples a pixel that the driver draws at once; msaa
+    int multisamples = 0;  // samples a pixel that the driver draws at once, for msaa; 0: none
     bool has_overlay = false;
 
     bool operator==(const TargetNeeds& other) const;
