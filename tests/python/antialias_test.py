@@ -104,9 +104,7 @@ def test_fxaa_smooths_edges_alone() -> None:
     edge = Polygon([(0, 31.3), (100, 42.9), (100, 100), (0, 100)])
     scene.add_polygons([edge], color="black")
     exact = draw(scene, antialias="ssaa", samples=32).image[..., :3].astype(float)
-    hard, soft = (
-        draw(scene, antialias=mode).image[..., :3].astype(float) for mode in ("none", "fxaa")
-    )
+    hard, soft = (draw(scene, antialias=mode).image[..., :3].astype(float) for mode in ("none", "fxaa"))
     partly = np.abs(hard - exact).max(axis=-1) > 2.0
     assert partly.sum() > 50
     rms = [np.sqrt(((one - exact)[partly] ** 2).mean()) for one in (hard, soft)]

@@ -14,7 +14,7 @@ layout(location = 0) out float mark;
 uniform sampler2D surface_texture;
 uniform ivec2 drawn_size;
 
-const float farthest = 0.5;  // footprints
+const float farthest = 1.0;  // footprints
 
 const ivec2 neighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 

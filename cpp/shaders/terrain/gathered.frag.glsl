@@ -5,8 +5,8 @@
 // nothing, the sample sees the sky if one of the neighbours does, or else the plane at the pixel's centre. Where ground
 // is seen at so flat an angle that a pixel spans many cells, the planes stand for it.
 //
-// RAMP       colours by height
-// GATHERED   always set: see gathered.glsl
+// RAMP   colours by height
+#define GATHERED 1
 #include "terrain/march.glsl"
 
 uniform sampler2D surface_texture;  // at the pixels' centres

@@ -49,22 +49,37 @@ Cell next_cell(Walk walk, Cell cell, vec2 out_at) {
     return cell_of(out_at.x <= out_at.y ? ivec2(beyond.x, first.y) : ivec2(first.x, beyond.y));
 }
 
+// The ground in a cell: heights of its corners, relative to the base.
+struct Corners {
+    float north_west;
+    float north_east;
+    float south_west;
+    float south_east;
+};
+
+float relative_height(ivec2 sample_index) {
+    return (sample_height(sample_index) - base_sample_fraction.z) - base_sample_fraction.w;
+}
+
+Corners corners_of(Cell cell) {
+    return Corners(relative_height(cell.low), relative_height(ivec2(cell.high.x, cell.low.y)),
+                   relative_height(ivec2(cell.low.x, cell.high.y)), relative_height(cell.high));
+}
+
+// The height at a place in the cell, from 0 to 1 to the east and to the south, on one of its triangles.
+float ground_at(Corners c, vec2 place, bool south) {
+    return south ? c.north_west + place.y * (c.south_west - c.north_west) + place.x * (c.south_east - c.south_west)
+                 : c.north_west + place.x * (c.north_east - c.north_west) + place.y * (c.south_east - c.north_east);
+}
+
+bool is_solid(Corners c, bool south) {
+    return min(min(c.north_west, c.south_east), south ? c.south_west : c.north_east) > 0.5 * missing_height;
+}
+
 Triangle triangle_of(Cell cell, bool south) {
     ivec2 corner = south ? ivec2(cell.low.x, cell.high.y) : ivec2(cell.high.x, cell.low.y);
     return Triangle(relative_to_base(cell.low, sample_height(cell.low)), relative_to_base(corner, sample_height(corner)),
                     relative_to_base(cell.high, sample_height(cell.high)));
-}
-
-bool is_missing(Triangle t) {
-    return min(t.a.z, min(t.b.z, t.c.z)) < 0.5 * missing_height;
-}
-
-// The ray's height above the triangle's plane after t metres.
-float height_above(Walk walk, Triangle t, Cell cell, float metres) {
-    vec2 place = (walk.start + metres * walk.along - vec2(cell.low - base_sample.xy)) * spacing.xy;
-    vec2 gradient = gradient_of(t);
-    float ground = t.a.z + gradient.x * place.x - gradient.y * place.y;
-    return walk.height + metres * walk.rise - ground;
 }
 
 const int nothing_met = 0;  // as far as was asked
@@ -84,6 +99,8 @@ int march(vec3 origin, vec3 direction, float from, float until, bool also_below,
     float height = 0.0;  // above the ground at the end of the last piece
     bool on_ground = false;
     bool found = false;
+    bool met_south = false;
+    Cell met_in = cell;
     int turn = 0;
     do {
         vec2 out_at = way_out(walk, cell);
@@ -92,22 +109,27 @@ int march(vec3 origin, vec3 direction, float from, float until, bool also_below,
         vec2 place = (walk.start - vec2(cell.low - base_sample.xy)) / across;
         vec2 speed = walk.along / across;
         // Above 0: south of the diagonal.
-        float diagonal = (place.y - place.x) + entered * (speed.y - speed.x);
-        float middle = entered - diagonal / (speed.y - speed.x);
+        float offside = place.y - place.x;
+        float drift = speed.y - speed.x;
+        float middle = -offside / drift;
         bool crosses = middle > entered && middle < left;
-        bool south = crosses ? diagonal > 0.0 : place.y - place.x + 0.5 * (entered + left) * (speed.y - speed.x) > 0.0;
+        bool south = crosses ? offside + entered * drift > 0.0 : offside + 0.5 * (entered + left) * drift > 0.0;
+        Corners ground = corners_of(cell);
+        bool inside = is_cell(cell.low);
         for (int piece = 0; piece < 2; ++piece) {
+            bool this_south = south == (piece == 0);
             float first = piece == 0 ? entered : middle;
             float last = piece == 0 && crosses ? middle : left;
-            Triangle t = triangle_of(cell, (piece == 0) == south);
-            bool solid = is_cell(cell.low) && !is_missing(t);
-            float before = on_ground ? height : height_above(walk, t, cell, first);
-            float after = height_above(walk, t, cell, last);
+            bool solid = inside && is_solid(ground, this_south);
+            float begin_height = walk.height + first * walk.rise - ground_at(ground, place + first * speed, this_south);
+            float before = on_ground ? height : begin_height;
+            float after = walk.height + last * walk.rise - ground_at(ground, place + last * speed, this_south);
             bool counts = !found && (piece == 0 || crosses);
             bool falls = before > 0.0 && after <= 0.0;
             bool rises = before < 0.0 && after >= 0.0;
             if (counts && solid && (falls || (rises && also_below))) {
-                met = t;
+                met_in = cell;
+                met_south = this_south;
                 found = true;
             }
             height = counts ? after : height;
@@ -117,5 +139,6 @@ int march(vec3 origin, vec3 direction, float from, float until, bool also_below,
         entered = left;
         ++turn;
     } while (!found && turn < most_cells && from + entered < until);
+    met = triangle_of(met_in, met_south);
     return found ? ground_met : from + entered < until ? not_known : nothing_met;
 }

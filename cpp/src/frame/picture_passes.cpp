@@ -230,7 +230,7 @@ std::vector<uint8_t> Pipeline::draw_gathered(const Piece& piece, Span<const uint
     const LowerRows used(seen.gbuffer.width(), silhouettes_->used_rows());
     {
         const gl::PassTimer timer(&timings_, "gathered");
-        gl::Program& program = programs_.get("gathered", terrain_->gathered_flags());
+        gl::Program& program = programs_.get("gathered", terrain_->ray_flags());
         seen.gbuffer.framebuffer.bind();
         program.use();
         terrain_->set_for_rays(program);

@@ -105,8 +105,8 @@ void TerrainMesh::set_for_rays(gl::Program& program) const {
     levels_.bind(3);
 }
 
-gl::Flags TerrainMesh::gathered_flags() const {
-    return ramp_ ? gl::Flags{"GATHERED", "RAMP"} : gl::Flags{"GATHERED"};
+gl::Flags TerrainMesh::ray_flags() const {
+    return ramp_ ? gl::Flags{"RAMP"} : gl::Flags{};
 }
 
 void TerrainMesh::set_levels(const std::vector<VisibleTile>& tiles) {

@@ -95,7 +95,7 @@ struct View {
     int height = 0;
     PositionGrid positions;
     Antialias antialias = Antialias::none;  // none or coverage: the others are made of pictures without
-    double widest_pixel = 0.0;  // metres that the farthest pixel is wide, seen head-on
+    double widest_pixel = 0.0;              // metres that the farthest pixel is wide, seen head-on
 };
 
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y
