@@ -195,7 +195,7 @@ void register_renderer(py::module_& module) {
              }),
              py::arg("width"), py::arg("height"), py::arg("antialias"), py::arg("terrain_error"),
              py::arg("memory_limit"), py::arg("backend"), py::arg("threads"), py::arg("rectangle"),
-             py::arg("index"), py::arg("bvh"), py::arg("samples"))
+             py::arg("index"), py::arg("bvh"), py::arg("samples") = RendererOptions{}.samples)
         .def(
             "set_picture",
             [](Renderer& renderer, int width, int height, const std::string& antialias) {

@@ -134,7 +134,7 @@ class Renderer:
         rectangle: int,
         index: str,
         bvh: dict[str, Any],
-        samples: int,
+        samples: int = 8,
     ) -> None: ...
     def set_picture(self, width: int, height: int, antialias: str) -> None: ...
     def preprocess(

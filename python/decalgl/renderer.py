@@ -44,6 +44,7 @@ LARGEST_SIDE = 1 << 20
 COVERAGE_SAMPLES = 32
 LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 IMAGE_BYTES, SURFACE_BYTES, TARGET_SIDE = 4, 64, 4096
+MULTISAMPLED_BYTES, MULTISAMPLED_SIDE = 40, 2048  # a sample
 
 
 class Renderer:
@@ -90,6 +91,7 @@ class Renderer:
             "samples": samples,
         }
         self.antialias = antialias
+        self._samples = checked_samples(samples)
         self._core = _core.Renderer(
             width=width,
             height=height,
@@ -101,7 +103,7 @@ class Renderer:
             rectangle=_checked_count(tile, "tile", "pixels", LARGEST_SIDE),
             index=core_index,
             bvh=bvh.to_dict(),
-            samples=checked_samples(samples),
+            samples=self._samples,
         )
         self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
@@ -191,7 +193,7 @@ class Renderer:
         """
         width, height = self.size
         if width * height > LARGE_PICTURE:
-            targets = SURFACE_BYTES * min(width, TARGET_SIDE) * min(height, TARGET_SIDE)
+            targets = _target_bytes(self.size, self.antialias, self._samples)
             needed = IMAGE_BYTES * width * height + targets
             check_memory(needed, f"A picture of {width} x {height} pixels", "draw", "Ask for a smaller size.")
         fitted = camera.for_size(self.size)
@@ -256,6 +258,14 @@ def _warn_of_long_walks(report: dict[str, int], visits: int) -> None:
             f" {report['shader_steps']:,} steps: where that many features lie under one pixel, the lowest may be"
             " missing. Look closer, leave features out, use antialias='none', or draw on a GPU."
         )
+
+
+def _target_bytes(size: tuple[int, int], antialias: str, samples: int) -> int:
+    """What the largest rectangle that is drawn at once takes."""
+    multisampled = antialias == "msaa"
+    side = MULTISAMPLED_SIDE if multisampled else TARGET_SIDE
+    pixel = SURFACE_BYTES + (MULTISAMPLED_BYTES * samples if multisampled else 0)
+    return pixel * min(size[0], side) * min(size[1], side)
 
 
 def _file_name(path: Any) -> bytes:

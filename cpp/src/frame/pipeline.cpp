@@ -17,6 +17,7 @@ namespace decalgl {
 namespace {
 
 constexpr int largest_rectangle = 4096;
+constexpr int largest_multisampled = 2048;  // a pixel takes several times the memory
 
 // Mesa's software rasteriser ends the loops of one shader run after 65,535 turns in all.
 constexpr uint64_t software_shader_steps = 65535;
@@ -115,7 +116,8 @@ void Pipeline::choose_pieces() {
                         std::to_string(limits.max_viewport[0]) + " x " +
                         std::to_string(limits.max_viewport[1]) + "; ask for a smaller size");
     const int border = border_of(request_.antialias);
-    const int wanted = options_.rectangle > 0 ? options_.rectangle : largest_rectangle;
+    const int largest = request_.antialias == Antialias::msaa ? largest_multisampled : largest_rectangle;
+    const int wanted = options_.rectangle > 0 ? options_.rectangle : largest;
     const int side = std::min(wanted, limits.max_texture_size - 2 * border);
     pieces_.clear();
     for (int y = 0; y < request_.height; y += side) {

@@ -99,7 +99,8 @@ struct View {
 };
 
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y
-// (shaders/shared/position.glsl). surface: terrain gradient, distance along the pixel's ray.
+// (shaders/shared/position.glsl). surface: terrain gradient, distance along the pixel's ray. Without coverage,
+// texels may have been gathered from anywhere in the picture: what they show follows from these two alone.
 struct GBufferView {
     const gl::Texture2D* position = nullptr;
     const gl::Texture2D* surface = nullptr;
