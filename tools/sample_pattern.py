@@ -1,6 +1,6 @@
-"""Finds the 32 sample positions of `cpp/shaders/shared/sample_offsets.glsl`.
+"""Finds where in a pixel samples lie: `cpp/shaders/shared/sample_offsets.glsl`, `cpp/src/frame/sample_pattern.cpp`.
 
-Among many scrambled (0, 5, 2)-nets (Sobol' points with Owen's scrambling), keeps the one whose mean over the samples
+Among many scrambled (0, m, 2)-nets (Sobol' points with Owen's scrambling), keeps the one whose mean over the samples
 errs least, in the root mean square, on straight edges at every angle and offset that cross the pixel.
 
 Run: python tools/sample_pattern.py
@@ -8,35 +8,32 @@ Run: python tools/sample_pattern.py
 
 import numpy as np
 
-BITS = 5
-COUNT = 1 << BITS
 
-
-def sobol_net() -> np.ndarray:
-    """The first two Sobol' dimensions as integers below 2^5, shape (32, 2)."""
-    index = np.arange(COUNT)
-    reversed_bits = sum(((index >> bit) & 1) << (BITS - 1 - bit) for bit in range(BITS))
-    second = np.zeros(COUNT, dtype=np.int64)
-    direction = 1 << (BITS - 1)
-    for bit in range(BITS):
+def sobol_net(bits: int) -> np.ndarray:
+    """The first two Sobol' dimensions as integers below 2^bits, shape (2^bits, 2)."""
+    index = np.arange(1 << bits)
+    reversed_bits = sum(((index >> bit) & 1) << (bits - 1 - bit) for bit in range(bits))
+    second = np.zeros(1 << bits, dtype=np.int64)
+    direction = 1 << (bits - 1)
+    for bit in range(bits):
         second ^= np.where((index >> bit) & 1, direction, 0)
         direction ^= direction >> 1
     return np.stack([reversed_bits, second], axis=1)
 
 
 def scramble(points: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """Owen's nested scrambling: each bit is flipped or not by the bits above it; then a place inside the stratum."""
-    result = np.empty(points.shape)
+    """Owen's nested scrambling: each bit is flipped or not by the bits above it. Integers, as `points`."""
+    count = len(points)
+    bits = count.bit_length() - 1
+    result = np.zeros_like(points)
     for axis in range(2):
-        flips = random.integers(0, 2, size=(BITS, COUNT))
-        values = points[:, axis].copy()
-        scrambled = np.zeros_like(values)
-        for bit in range(BITS):
-            above = values >> (BITS - bit)
-            flipped = ((values >> (BITS - 1 - bit)) & 1) ^ flips[bit, above]
-            scrambled |= flipped << (BITS - 1 - bit)
-        result[:, axis] = (scrambled + 0.5) / COUNT
-    return result - 0.5
+        flips = random.integers(0, 2, size=(bits, count))
+        values = points[:, axis]
+        for bit in range(bits):
+            above = values >> (bits - bit)
+            flipped = ((values >> (bits - 1 - bit)) & 1) ^ flips[bit, above]
+            result[:, axis] |= flipped << (bits - 1 - bit)
+    return result
 
 
 def edges(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -58,26 +55,31 @@ def edges(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return normal, offsets, exact
 
 
-def main() -> None:
+def best_net(bits: int) -> tuple[np.ndarray, float, float]:
+    """Columns and rows of the samples, (2^bits, 2); their error on straight edges: root mean square, largest."""
     random = np.random.default_rng(2020)
     normal, offsets, exact = edges(24)
     partly = (exact > 0) & (exact < 1)
-    best, best_error = None, np.inf
+    best, best_rms, worst = sobol_net(bits), np.inf, np.inf
     for _ in range(3000):
-        points = scramble(sobol_net(), random)
+        net = scramble(sobol_net(bits), random)
+        points = (net + 0.5) / len(net) - 0.5
         inside = (normal @ points.T)[:, None, :] <= offsets[:, :, None]
         error = (inside.mean(axis=2) - exact)[partly]
         rms = float(np.sqrt((error**2).mean()))
-        if rms < best_error:
-            best, best_error, worst = points, rms, float(np.abs(error).max())
-    assert best is not None
-    print(f"// straight edges: rms {best_error:.4f}, largest {worst:.4f}")
-    for row in range(0, COUNT, 4):
-        print(
-            "    "
-            + ", ".join(f"vec2({x:.6f}, {y:.6f})" for x, y in best[row : row + 4])
-            + ("," if row < 28 else "")
-        )
+        if rms < best_rms:
+            best, best_rms, worst = net, rms, float(np.abs(error).max())
+    return best, best_rms, worst
+
+
+def main() -> None:
+    for bits in range(1, 6):
+        net, rms, worst = best_net(bits)
+        print(f"{len(net)} samples, on straight edges: rms {rms:.4f}, largest {worst:.4f}")
+        print("rows by column:", ", ".join(str(row) for row in net[np.argsort(net[:, 0]), 1]))
+    offsets = (net + 0.5) / len(net) - 0.5
+    for row in range(0, len(net), 4):
+        print("   ", ", ".join(f"vec2({x:.6f}, {y:.6f})" for x, y in offsets[row : row + 4]))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "decalgl/frame/antialias.h"
 #include "decalgl/core/error.h"
 #include "decalgl/frame/renderer.h"
 #include "frame/prepared_file.h"
@@ -17,14 +18,6 @@ using Vector = std::array<double, 3>;
 
 glm::dvec3 to_glm(const Vector& v) {
     return {v[0], v[1], v[2]};
-}
-
-Antialias antialias_named(const std::string& name) {
-    if (name == "none")
-        return Antialias::none;
-    if (name == "coverage")
-        return Antialias::coverage;
-    throw Error(ErrorKind::input, "there is no antialias '" + name + "'; choose none or coverage");
 }
 
 CoverageRule coverage_named(const std::string& name) {
@@ -194,11 +187,13 @@ void register_renderer(py::module_& module) {
     py::class_<Renderer>(module, "Renderer")
         .def(py::init([](int width, int height, const std::string& antialias, double terrain_error,
                          uint64_t memory_limit, const std::string& backend, unsigned threads, int rectangle,
-                         const std::string& index, const py::dict& bvh, const std::string& coverage) {
+                         const std::string& index, const py::dict& bvh, const std::string& coverage,
+                         int samples) {
                  RendererOptions options;
                  options.width = width;
                  options.height = height;
                  options.antialias = antialias_named(antialias);
+                 options.samples = samples;
                  options.terrain_error = terrain_error;
                  options.memory_limit = memory_limit;
                  options.backend = backend;
@@ -211,7 +206,8 @@ void register_renderer(py::module_& module) {
              }),
              py::arg("width"), py::arg("height"), py::arg("antialias"), py::arg("terrain_error"),
              py::arg("memory_limit"), py::arg("backend"), py::arg("threads"), py::arg("rectangle"),
-             py::arg("index"), py::arg("bvh"), py::arg("coverage") = "exact")
+             py::arg("index"), py::arg("bvh"), py::arg("coverage") = "exact",
+             py::arg("samples") = RendererOptions{}.samples)
         .def(
             "set_picture",
             [](Renderer& renderer, int width, int height, const std::string& antialias) {

@@ -135,6 +135,7 @@ class Renderer:
         index: str,
         bvh: dict[str, Any],
         coverage: str = "exact",
+        samples: int = 8,
     ) -> None: ...
     def set_picture(self, width: int, height: int, antialias: str) -> None: ...
     def preprocess(

@@ -117,7 +117,7 @@ def draw(scene_file: Path | None, flags: Flags, place: Place, picture: Picture, 
     bars.check()
     options = loaded.picture
     background = options.background if picture.background is None else picture.background
-    renderer = {"index": options.index, **picture.renderer}
+    renderer = {"index": options.index, "samples": options.samples, **picture.renderer}
     frame: Frame = loaded.scene.render(
         choose_camera(loaded, place),
         size=picture.size or options.size,

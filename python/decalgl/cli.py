@@ -54,7 +54,10 @@ def render(
     output: Annotated[Path | None, typer.Option("-o", "--output", help="The picture to write.")] = None,
     view: Annotated[Text, typer.Option(help="A view of the scene file.")] = None,
     size: Annotated[Text, typer.Option(help="Pixels, such as 1920x1080.")] = None,
-    antialias: Annotated[Text, typer.Option(help="none or coverage.")] = None,
+    antialias: Annotated[Text, typer.Option(help="none, coverage, ssaa, msaa or fxaa.")] = None,
+    samples: Annotated[
+        int | None, typer.Option(help="Samples a pixel of ssaa and msaa: 1, 2, 4, 8, 16 or 32.")
+    ] = None,
     background: Annotated[Text, typer.Option(help="sky, a colour, or none for transparent.")] = None,
     dem: Annotated[Path | None, typer.Option(help="A terrain raster, instead of a scene file.")] = None,
     exaggeration: Annotated[
@@ -108,6 +111,7 @@ def render(
             backend=backend,
             cache=cache,
             index=index,
+            samples=samples,
         ),
     )
     with _drawing.ProgressBars(messages, hidden=quiet) as bars:

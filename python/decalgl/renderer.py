@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from . import _core
+from ._antialias import checked_antialias, checked_samples
 from ._colors import parse_color
 from ._core_scene import core_scene
 from ._raster import check_memory
 from .camera import checked_size
-from .errors import CancelledError, InputError, UnsupportedError, warn
+from .errors import CancelledError, InputError, warn
 from .frame import Frame, PreparedLayer
 from .indexes import BvhIndex, resolve_index
 
@@ -35,8 +36,6 @@ if TYPE_CHECKING:
     Rgba = tuple[float, float, float, float]
     Progress = Callable[[str, float], bool | None]
 
-ANTIALIAS = ("none", "coverage")
-PLANNED_ANTIALIAS = ("msaa", "ssaa", "fxaa")
 COVERAGES = ("exact", "thoeny")
 BACKENDS = ("auto", "egl", "osmesa")
 # At the horizon, and 45 degrees above it.
@@ -46,13 +45,15 @@ LARGEST_SIDE = 1 << 20
 COVERAGE_SAMPLES = 32
 LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 IMAGE_BYTES, SURFACE_BYTES, TARGET_SIDE = 4, 64, 4096
+MULTISAMPLED_BYTES, MULTISAMPLED_SIDE = 40, 2048  # a sample
 
 
 class Renderer:
     """Draws scenes in a GL context of its own, which opens with the first `update`.
 
     size: (width, height) of the picture in pixels.
-    antialias: "coverage" (each pixel shows the mean over its area) or "none" (its centre).
+    antialias: "coverage" (each pixel shows the mean over its area), "none" (its centre), "ssaa" or "msaa" (the mean of
+        samples, each a whole picture; the second with the driver's samples) or "fxaa" (smoothed afterwards).
     terrain_error: pixels on the screen that the terrain's level of detail may be off; 0 draws every sample.
     memory_limit: bytes for prepared data and GL objects together; None: no limit.
     backend: "auto", "egl" or "osmesa".
@@ -61,9 +62,10 @@ class Renderer:
     index: of static layers, "grid" (the faster one), "bvh", "thoeny" or a `BvhIndex`: see `decalgl.indexes`.
     coverage: what antialias="coverage" is: "exact", the mean over each pixel's area, or "thoeny", an estimate for
         lines after Thöny et al. 2018: see docs/techniques/static.md.
+    samples: a pixel, of "ssaa" and "msaa": 1, 2, 4, 8, 16 or 32.
 
     Call everything but `preprocess`, `save` and `open` from one thread. A call that fails leaves the renderer usable.
-    Raises InputError for arguments out of range, UnsupportedError for what this version does not draw.
+    Raises InputError for arguments out of range.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class Renderer:
         tile: int | None = None,
         index: str | BvhIndex = "grid",
         coverage: str = "exact",
+        samples: int = 8,
     ) -> None:
         if backend not in BACKENDS:
             raise InputError(f"There is no backend {backend!r}; choose 'auto', 'egl' or 'osmesa'.")
@@ -92,12 +95,14 @@ class Renderer:
             "tile": tile,
             "index": index,
             "coverage": coverage,
+            "samples": samples,
         }
         self.antialias = antialias
+        self._samples = checked_samples(samples)
         self._core = _core.Renderer(
             width=width,
             height=height,
-            antialias=_checked_antialias(antialias),
+            antialias=checked_antialias(antialias),
             terrain_error=_checked_error(terrain_error),
             memory_limit=_checked_count(memory_limit, "memory_limit", "bytes", 2**63),
             backend=backend,
@@ -106,6 +111,7 @@ class Renderer:
             index=core_index,
             bvh=bvh.to_dict(),
             coverage=coverage,
+            samples=self._samples,
         )
         self.size = (width, height)
         self._prepared: tuple[Any, ...] = ()
@@ -120,7 +126,7 @@ class Renderer:
     def set_picture(self, size: tuple[int, int], antialias: str) -> None:
         """The size and anti-aliasing of the pictures from the next `update` on."""
         width, height = _checked_picture(size)
-        self._core.set_picture(width, height, _checked_antialias(antialias))
+        self._core.set_picture(width, height, checked_antialias(antialias))
         self.antialias = antialias
         self.size = (width, height)
 
@@ -195,7 +201,7 @@ class Renderer:
         """
         width, height = self.size
         if width * height > LARGE_PICTURE:
-            targets = SURFACE_BYTES * min(width, TARGET_SIDE) * min(height, TARGET_SIDE)
+            targets = _target_bytes(self.size, self.antialias, self._samples)
             needed = IMAGE_BYTES * width * height + targets
             check_memory(needed, f"A picture of {width} x {height} pixels", "draw", "Ask for a smaller size.")
         fitted = camera.for_size(self.size)
@@ -235,6 +241,7 @@ DEFAULT_OPTIONS = {
     "tile": None,
     "index": "grid",
     "coverage": "exact",
+    "samples": 8,
 }
 
 
@@ -264,6 +271,14 @@ def _warn_of_long_walks(report: dict[str, int], visits: int) -> None:
         )
 
 
+def _target_bytes(size: tuple[int, int], antialias: str, samples: int) -> int:
+    """What the largest rectangle that is drawn at once takes."""
+    multisampled = antialias == "msaa"
+    side = MULTISAMPLED_SIDE if multisampled else TARGET_SIDE
+    pixel = SURFACE_BYTES + (MULTISAMPLED_BYTES * samples if multisampled else 0)
+    return pixel * min(size[0], side) * min(size[1], side)
+
+
 def _file_name(path: Any) -> bytes:
     """A path as the system takes it. Raises InputError for what is none."""
     try:
@@ -290,16 +305,6 @@ def _checked_picture(size: tuple[int, int]) -> tuple[int, int]:
     if max(width, height) > LARGEST_SIDE:
         raise InputError(f"size must be at most {LARGEST_SIDE} pixels a side, but it is {size!r}.")
     return width, height
-
-
-def _checked_antialias(antialias: str) -> str:
-    if antialias in PLANNED_ANTIALIAS:
-        raise UnsupportedError(
-            f"antialias={antialias!r} is not drawn by this version; use 'coverage' or 'none'."
-        )
-    if antialias not in ANTIALIAS:
-        raise InputError(f"There is no antialias={antialias!r}; choose 'coverage' or 'none'.")
-    return antialias
 
 
 def _checked_error(value: Any) -> float:

@@ -11,7 +11,8 @@
     [views.NAME]                     look_at  = { eye = [x, y, z], target = [x, y, z], fov, crs }
                                      orbit    = { target = [x, y, z], distance, azimuth, elevation, fov, crs }
                                      top_down = { bounds = [xmin, ymin, xmax, ymax], margin, crs }
-    [picture]                        size = [width, height], antialias, background ("none": transparent), view, index
+    [picture]                        size = [width, height], antialias, samples, background ("none": transparent),
+                                     view, index
 
 Layers are drawn bottom to top. Paths are relative to the file; a path that ends in .gz is unpacked while it
 is read. Positions are metres of the scene's plane (heights after exaggeration) unless the view names a `crs`
@@ -25,6 +26,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ._antialias import ANTIALIAS, SAMPLES
 from ._crs import parse_crs
 from ._scene_file_styles import parse_style, present
 from ._tables import StrictTable
@@ -57,6 +59,7 @@ class PictureOptions:
     background: str | None = "sky"
     view: str | None = None
     index: str = "grid"
+    samples: int = 8
 
 
 @dataclass(frozen=True)
@@ -296,11 +299,15 @@ def _parse_picture(table: StrictTable) -> PictureOptions:
         )
     given = present(
         size=tuple(size) if size else None,
-        antialias=table.text("antialias"),
+        antialias=table.choice("antialias", ANTIALIAS),
         view=table.text("view"),
         background=table.text("background"),
         index=table.choice("index", INDEXES),
+        samples=table.integer("samples"),
     )
+    if given.get("samples", SAMPLES[0]) not in SAMPLES:
+        known = ", ".join(str(one) for one in SAMPLES)
+        raise table.error(f"samples must be one of {known}, but it is {given['samples']}.")
     table.finish()
     if given.get("background") == "none":
         given["background"] = None

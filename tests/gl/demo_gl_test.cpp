@@ -69,7 +69,7 @@ struct Picture {
 
 TEST_CASE("the demo draws a picture of the size asked for") {
     const TemporaryFolder folder;
-    for (const std::string antialias : {"none", "coverage"}) {
+    for (const std::string antialias : {"none", "coverage", "ssaa", "msaa", "fxaa"}) {
         const fs::path out = folder.path / "new" / (antialias + ".png");
         REQUIRE(run("--data '" + data.string() + "' --size 160x90 --antialias " + antialias + " --out '" +
                         out.string() + "'",
@@ -101,7 +101,7 @@ TEST_CASE("the demo says what is wrong and ends with code 2") {
     CHECK_THAT(text_of(messages), Catch::Contains("not a whole gzip file"));
 
     for (const std::string wrong :
-         {"--size 16", "--size 0x9", "--size 16x9x", "--antialias msaa", "--unknown"}) {
+         {"--size 16", "--size 0x9", "--size 16x9x", "--antialias smooth", "--unknown"}) {
         CHECK(run(wrong, messages) == 2);
     }
     const fs::path blocked = folder.path / "dem.tif" / "map.png";

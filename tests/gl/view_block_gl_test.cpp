@@ -28,6 +28,7 @@ const std::map<std::string, size_t> offsets{
     {"base_sample", offsetof(ViewBlock, base_sample)},
     {"samples", offsetof(ViewBlock, samples)},
     {"picture", offsetof(ViewBlock, picture)},
+    {"jitter", offsetof(ViewBlock, jitter)},
 };
 
 }  // namespace

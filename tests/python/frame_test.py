@@ -248,7 +248,7 @@ def test_nothing_runs_that_the_scene_does_not_need() -> None:
     opaque.add_polygons([square])
     needed = {"terrain", "compose", "static_decals", "OVERLAY", "RINGS"}
     assert variants(opaque) == needed | {"ONE_COLOR"}
-    assert variants(opaque, antialias="coverage", tile=512) == needed | AREA_PASSES
+    assert variants(opaque, antialias="coverage", tile=512) == needed | AREA_PASSES | {"silhouettes"}
     colourful = flat_scene()
     colourful.add_polygons([square, line.buffer(1)], color=["red", "green"])
     assert variants(colourful) == needed

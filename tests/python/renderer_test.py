@@ -80,8 +80,13 @@ def test_stages_out_of_order() -> None:
         ({"size": (10, 10, 10)}, dg.InputError, "width, height"),
         ({"size": "big"}, dg.InputError, "width, height"),
         ({"size": (10**12, 10)}, dg.InputError, "at most"),
-        ({"antialias": "msaa"}, dg.UnsupportedError, "'coverage' or 'none'"),
-        ({"antialias": "smooth"}, dg.InputError, "'coverage' or 'none'"),
+        ({"antialias": "smooth"}, dg.InputError, "'none', 'coverage', 'ssaa', 'msaa', 'fxaa'"),
+        ({"antialias": None}, dg.InputError, "'none', 'coverage', 'ssaa', 'msaa', 'fxaa'"),
+        ({"samples": 0}, dg.InputError, "1, 2, 4, 8, 16, 32"),
+        ({"samples": 3}, dg.InputError, "1, 2, 4, 8, 16, 32"),
+        ({"samples": 64}, dg.InputError, "1, 2, 4, 8, 16, 32"),
+        ({"samples": "many"}, dg.InputError, "1, 2, 4, 8, 16, 32"),
+        ({"samples": 2.0}, dg.InputError, "1, 2, 4, 8, 16, 32"),
         ({"terrain_error": -1}, dg.InputError, "terrain_error"),
         ({"terrain_error": NAN}, dg.InputError, "terrain_error"),
         ({"terrain_error": "fine"}, dg.InputError, "terrain_error"),
@@ -125,7 +130,7 @@ def test_one_renderer_serves_many_pictures() -> None:
 @pytest.mark.parametrize(
     "options", [{"tile": 17}, {"threads": 1}, {"threads": 3}, {"memory_limit": 1 << 30}], ids=str
 )
-@pytest.mark.parametrize("antialias", ["none", "coverage"])
+@pytest.mark.parametrize("antialias", ["none", "coverage", "ssaa", "msaa", "fxaa"])
 def test_options_that_do_not_change_the_picture(options: dict[str, Any], antialias: str) -> None:
     scene = mixed_scene()
     plain = draw(scene, OBLIQUE, antialias=antialias)

@@ -71,6 +71,8 @@ def test_everything_is_described(tmp_path: Path) -> None:
     background = "none"
     view = "map"
     index = "thoeny"
+    antialias = "ssaa"
+    samples = 16
     """
     scene = read_scene_file(write(tmp_path, text))
     assert scene.terrain == {"path": str(tmp_path / "dem.tif"), "crs": "EPSG:32604"}
@@ -82,7 +84,7 @@ def test_everything_is_described(tmp_path: Path) -> None:
     assert (roads.kind, roads.source) == ("lines", "/data/roads.gpkg")
     assert roads.keywords == {"name": "roads", "width": 6.0, "width_units": "m"}
     assert scene.views["valley"].keywords == {"eye": (0, 0, 100), "target": (1, 2, 3), "fov": 40}
-    assert scene.picture == PictureOptions((640, 480), "coverage", None, "map", "thoeny")
+    assert scene.picture == PictureOptions((640, 480), "ssaa", None, "map", "thoeny", 16)
 
 
 def layer_keywords(folder: Path, kind: str, text: str) -> Any:
@@ -269,6 +271,9 @@ def test_a_flat_terrain_is_enough(tmp_path: Path) -> None:
         ("[terrain]\nflat = [0, 0, 1, nan]", "finite number"),
         ("terrain = 3", "must be a table"),
         (FLAT + "exaggeration = true", "finite number"),
+        (FLAT + "[picture]\nantialias = 'smaa'", "Did you mean 'ssaa'"),
+        (FLAT + "[picture]\nsamples = 5", "[picture]: samples must be one of 1, 2, 4, 8, 16, 32"),
+        (FLAT + "[picture]\nsamples = 2.0", "[picture]: samples must be a whole number"),
         (FLAT + "[relief]\ncolour = 'red'", "[relief]: unknown key 'colour'. Did you mean 'color'"),
         (FLAT + "[layers]\npath = 'a'", "two brackets"),
         (FLAT + "[[layers]]\npath = 'a'", "[[layers]] number 1: the key 'type' is missing"),

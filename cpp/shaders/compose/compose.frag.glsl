@@ -1,6 +1,8 @@
 // The picture: the overlay over the shaded terrain, or the sky. "Over" on sRGB values, as map tools do.
 //
 // OVERLAY   a layer was drawn
+// SAMPLE    one of the samples of a picture: premultiplied, to be added up
+// GATHERED  samples of pixels from anywhere in the picture
 #include "shared/ray.glsl"
 
 layout(location = 0) out vec4 color;
@@ -20,18 +22,22 @@ vec4 sky() {
     return mix(sky_low, sky_high, rise);
 }
 
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 surface = texelFetch(surface_texture, pixel, 0);
-    if (isinf(surface.z)) {
-        color = sky();
-        return;
-    }
-    float shade = surface.w;
-    color = vec4(clamp(texelFetch(base_texture, pixel, 0).rgb * shade, 0.0, 1.0), 1.0);
+vec4 ground(ivec2 pixel, float shade) {
+    vec3 bare = clamp(texelFetch(base_texture, pixel, 0).rgb * shade, 0.0, 1.0);
 #ifdef OVERLAY
     vec4 overlay = texelFetch(overlay_texture, pixel, 0);
     vec3 lit = clamp(overlay.rgb * mix(1.0, shade, layer_shading), 0.0, overlay.a);
-    color.rgb = lit + (1.0 - overlay.a) * color.rgb;
+    return vec4(lit + (1.0 - overlay.a) * bare, 1.0);
+#else
+    return vec4(bare, 1.0);
+#endif
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 surface = texelFetch(surface_texture, pixel, 0);
+    color = isinf(surface.z) ? sky() : ground(pixel, surface.w);
+#ifdef SAMPLE
+    color.rgb *= color.a;
 #endif
 }

@@ -1,9 +1,23 @@
-// Rays through pixel centres, and how a pixel's square lies on the surface's tangent plane.
+// Rays through pixel centres or samples, and how a pixel's square lies on the surface's tangent plane.
+//
+// MULTISAMPLED   the driver's samples of a pixel are shaded one by one
+// GATHERED       texels are samples of pixels from anywhere in the picture
 #include "shared/view_block.h"
+#ifdef GATHERED
+#include "shared/gathered.glsl"
+#endif
 
-// This pixel's centre, in pixels from the centre of the whole picture, y upwards.
+// The sample in hand, in pixels from the centre of the whole picture, y upwards: this pixel's centre, but for
+// jittered pictures.
 vec2 pixel_from_centre() {
-    return gl_FragCoord.xy + vec2(picture.xy) - 0.5 * spacing.zw;
+#ifdef MULTISAMPLED
+    vec2 place = floor(gl_FragCoord.xy) + gl_SamplePosition;
+#elif defined(GATHERED)
+    vec2 place = vec2(gathered_pixel()) + 0.5 + gathered_offset();
+#else
+    vec2 place = gl_FragCoord.xy;
+#endif
+    return place + vec2(picture.xy) - 0.5 * spacing.zw + jitter.xy;
 }
 
 vec3 ray_direction_at(vec2 pixel) {

@@ -40,9 +40,10 @@ layout(std140, binding = 0) uniform ViewBlock {
     ivec4 base_sample;          // x: column, y: row
     ivec4 samples;              // x: columns, y: rows of the terrain
     ivec4 picture;              // x, y: first pixel of this rectangle; z, w: size of the whole picture
+    vec4 jitter;                // x, y: where in its pixel the sample in hand lies, in pixels from the centre
 #ifdef __cplusplus
 };
-static_assert(sizeof(ViewBlock) == 64 + 13 * 16, "std140 layout");
+static_assert(sizeof(ViewBlock) == 64 + 14 * 16, "std140 layout");
 }  // namespace decalgl
 #else
 };

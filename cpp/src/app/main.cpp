@@ -1,6 +1,6 @@
 // decalgl_demo: draws Honolulu over its mountains and says what the picture cost.
 //
-//     decalgl_demo [--data FOLDER] [--out honolulu.png] [--size 1920x1080] [--antialias none|coverage]
+//     decalgl_demo [--data FOLDER] [--out honolulu.png] [--size 1920x1080] [--antialias coverage]
 //
 // Times go to standard output, progress and errors to standard error. Exit codes: 0 done, 2 an error.
 
@@ -19,6 +19,7 @@
 #include "app/honolulu.h"
 #include "app/png_file.h"
 #include "decalgl/core/error.h"
+#include "decalgl/frame/antialias.h"
 #include "decalgl/frame/renderer.h"
 
 namespace decalgl {
@@ -104,7 +105,7 @@ void print_cost(const TimingLog& timings, const FrameStats& stats, double write_
 void draw(const Options& options) {
     RendererOptions renderer_options;
     parse_size(options.size, renderer_options);
-    renderer_options.antialias = options.antialias == "none" ? Antialias::none : Antialias::coverage;
+    renderer_options.antialias = antialias_named(options.antialias);
     renderer_options.backend = options.backend;
     Renderer renderer(renderer_options);
     if (!std::filesystem::is_directory(options.data)) {
@@ -139,7 +140,7 @@ int run(int count, char** arguments) {
     app.add_option("--out", options.out, "The PNG file to write")->capture_default_str();
     app.add_option("--size", options.size, "Pixels")->capture_default_str();
     app.add_option("--antialias", options.antialias, "How edges are smoothed")
-        ->check(CLI::IsMember({"none", "coverage"}))
+        ->check(CLI::IsMember({"none", "coverage", "ssaa", "msaa", "fxaa"}))
         ->capture_default_str();
     app.add_option("--backend", options.backend, "Where OpenGL comes from")
         ->check(CLI::IsMember({"auto", "egl", "osmesa"}))

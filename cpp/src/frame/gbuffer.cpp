@@ -4,15 +4,19 @@
 
 namespace decalgl {
 
-GBuffer::GBuffer(int width, int height, const MemoryAccount& memory)
-    : position(gl::Texture2D::create(memory, "frame: position", GL_RGBA32UI, width, height)),
-      surface(gl::Texture2D::create(memory, "frame: surface", GL_RGBA32F, width, height)),
-      base(gl::Texture2D::create(memory, "frame: base", GL_RGBA8, width, height)),
-      depth(gl::Texture2D::create(memory, "frame: depth", GL_DEPTH_COMPONENT32F, width, height)),
-      framebuffer(gl::Framebuffer::create("G-buffer", {{GL_COLOR_ATTACHMENT0, &position},
+GBuffer::GBuffer(int width, int height, const MemoryAccount& memory, int samples) {
+    const auto texture = [&](const char* name, GLenum format) {
+        return gl::Texture2D::create(memory, name, format, width, height, 1, samples);
+    };
+    position = texture("frame: position", GL_RGBA32UI);
+    surface = texture("frame: surface", GL_RGBA32F);
+    base = texture("frame: base", GL_RGBA8);
+    depth = texture("frame: depth", GL_DEPTH_COMPONENT32F);
+    framebuffer = gl::Framebuffer::create("G-buffer", {{GL_COLOR_ATTACHMENT0, &position},
                                                        {GL_COLOR_ATTACHMENT1, &surface},
                                                        {GL_COLOR_ATTACHMENT2, &base},
-                                                       {GL_DEPTH_ATTACHMENT, &depth}})) {}
+                                                       {GL_DEPTH_ATTACHMENT, &depth}});
+}
 
 void GBuffer::begin() const {
     constexpr unsigned sky_block = 0x80000000U;  // shaders/shared/position.glsl

@@ -9,7 +9,8 @@ namespace decalgl {
 class GBuffer {
 public:
     GBuffer() = default;
-    GBuffer(int width, int height, const MemoryAccount& memory);
+    // samples: a pixel, as the driver draws them; 0: one, in textures that techniques read.
+    GBuffer(int width, int height, const MemoryAccount& memory, int samples = 0);
 
     // Binds it for drawing and clears it to sky.
     void begin() const;

@@ -1,8 +1,11 @@
 #include "frame/pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "decalgl/core/error.h"
@@ -14,6 +17,7 @@ namespace decalgl {
 namespace {
 
 constexpr int largest_rectangle = 4096;
+constexpr int largest_multisampled = 2048;  // a pixel takes several times the memory
 
 // Mesa's software rasteriser ends the loops of one shader run after 65,535 turns in all.
 constexpr uint64_t software_shader_steps = 65535;
@@ -34,16 +38,10 @@ bool same_view(const PictureRequest& a, const PictureRequest& b) {
            a.width == b.width && a.height == b.height && a.terrain_error == b.terrain_error;
 }
 
-// Copies a rectangle, whose rows come bottom first, into an array of the whole picture with row 0 at the top.
-template <typename T>
-void place(const std::vector<T>& pixels, const Rectangle& rectangle, int components, int width, int height,
-           std::vector<T>& picture) {
-    const auto row_length = static_cast<std::ptrdiff_t>(rectangle.width) * components;
-    for (int row = 0; row < rectangle.height; ++row) {
-        const int picture_row = height - 1 - (rectangle.y + row);
-        const auto target = (static_cast<std::ptrdiff_t>(picture_row) * width + rectangle.x) * components;
-        std::copy_n(pixels.begin() + row * row_length, row_length, picture.begin() + target);
-    }
+// How far passes look beyond a pixel: at the planes of its neighbours, along an edge.
+int border_of(Antialias antialias) {
+    constexpr int fxaa_reach = 17;  // search_steps and one across, in shaders/compose/fxaa.frag.glsl
+    return antialias == Antialias::fxaa ? fxaa_reach : antialias == Antialias::coverage ? 1 : 0;
 }
 
 }  // namespace
@@ -82,7 +80,7 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
 
 UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
     timings_.clear();
-    drawn_in_gbuffer_ = nullptr;
+    at_centres_ = nullptr;
     if (scene_ != scene) {
         const gl::PassTimer timer(&timings_, "upload");
         upload(std::move(scene));
@@ -93,12 +91,13 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     view_ = {request.width,
              request.height,
              scene_->positions,
-             request.antialias,
+             request.antialias == Antialias::coverage ? Antialias::coverage : Antialias::none,
              widest_pixel(tiles_, scene_->terrain, request.camera, request.height),
              options_.coverage};
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
-    choose_rectangles();
+    terrain_->set_levels(tiles_);
+    choose_pieces();
     make_targets();
     UpdateReport report;
     report.shader_steps = context_->info().software ? software_shader_steps : 0;
@@ -111,7 +110,7 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     return report;
 }
 
-void Pipeline::choose_rectangles() {
+void Pipeline::choose_pieces() {
     const gl::ContextInfo& limits = context_->info();
     if (request_.width > limits.max_viewport[0] || request_.height > limits.max_viewport[1])
         throw Error(ErrorKind::memory,
@@ -119,111 +118,91 @@ void Pipeline::choose_rectangles() {
                         std::to_string(request_.height) + " pixels is larger than this driver's " +
                         std::to_string(limits.max_viewport[0]) + " x " +
                         std::to_string(limits.max_viewport[1]) + "; ask for a smaller size");
-    const int wanted = options_.rectangle > 0 ? options_.rectangle : largest_rectangle;
-    const int side = std::min(wanted, limits.max_texture_size);
-    rectangles_.clear();
-    for (int y = 0; y < request_.height; y += side)
-        for (int x = 0; x < request_.width; x += side)
-            rectangles_.push_back(
-                {x, y, std::min(side, request_.width - x), std::min(side, request_.height - y)});
+    const int border = border_of(request_.antialias);
+    const int largest = request_.antialias == Antialias::msaa ? largest_multisampled : largest_rectangle;
+    const int wanted = options_.rectangle > 0 ? options_.rectangle : largest;
+    const int side = std::min(wanted, limits.max_texture_size - 2 * border);
+    pieces_.clear();
+    for (int y = 0; y < request_.height; y += side) {
+        for (int x = 0; x < request_.width; x += side) {
+            const int right = std::min(x + side, request_.width);
+            const int top = std::min(y + side, request_.height);
+            const int left = std::max(0, x - border);
+            const int bottom = std::max(0, y - border);
+            pieces_.push_back({{x, y, right - x, top - y},
+                               {left, bottom, std::min(right + border, request_.width) - left,
+                                std::min(top + border, request_.height) - bottom}});
+        }
+    }
+}
+
+// The most samples a pixel that the driver draws at once and that divide those asked for; 0 where it has none.
+int Pipeline::multisamples() const {
+    std::set<GLint> counts;
+    for (int count = 2; count <= options_.samples; count *= 2)
+        counts.insert(count);
+    for (const GLenum format : {GL_RGBA32UI, GL_RGBA32F, GL_RGBA8, GL_DEPTH_COMPONENT32F}) {
+        std::array<GLint, 16> supported{};
+        glGetInternalformativ(GL_TEXTURE_2D_MULTISAMPLE, format, GL_SAMPLES, supported.size(),
+                              supported.data());
+        for (auto count = counts.begin(); count != counts.end();)
+            count = std::count(supported.begin(), supported.end(), *count) > 0 ? std::next(count)
+                                                                               : counts.erase(count);
+    }
+    return counts.empty() ? 0 : *counts.rbegin();
 }
 
 void Pipeline::make_targets() {
-    const int width = rectangles_.front().width;
-    const int height = rectangles_.front().height;
-    const bool has_overlay = !techniques_.empty();
-    const bool has_depth = std::any_of(techniques_.begin(), techniques_.end(),
-                                       [&](const auto& technique) { return technique->needs_depth(view_); });
-    const bool fits = picture_ && gbuffer_.width() == width && gbuffer_.height() == height &&
-                      static_cast<bool>(overlay_) == has_overlay &&
-                      static_cast<bool>(overlay_depth_) == has_depth;
-    if (fits)
+    TargetNeeds needs;
+    for (const Piece& piece : pieces_) {
+        needs.width = std::max(needs.width, piece.drawn.width);
+        needs.height = std::max(needs.height, piece.drawn.height);
+    }
+    needs.antialias = request_.antialias;
+    needs.multisamples = request_.antialias == Antialias::msaa ? multisamples() : 0;
+    needs.has_overlay = !techniques_.empty();
+    needs.has_depth = std::any_of(techniques_.begin(), techniques_.end(),
+                                  [&](const auto& technique) { return technique->needs_depth(view_); });
+    if (targets_ && targets_->needs == needs)
         return;
-    gbuffer_ = GBuffer();
-    overlay_ = gl::Texture2D();
-    overlay_depth_ = gl::Texture2D();
-    picture_ = gl::Texture2D();
-    gbuffer_ = GBuffer(width, height, memory_);
-    if (has_overlay) {
-        overlay_ = gl::Texture2D::create(memory_, "frame: overlay", GL_RGBA8, width, height);
-        std::vector<gl::Attachment> attachments{{GL_COLOR_ATTACHMENT0, &overlay_}};
-        if (has_depth) {
-            overlay_depth_ =
-                gl::Texture2D::create(memory_, "frame: overlay", GL_DEPTH_COMPONENT32F, width, height);
-            attachments.push_back({GL_DEPTH_ATTACHMENT, &overlay_depth_});
-        }
-        overlay_framebuffer_ = gl::Framebuffer::create("overlay", attachments);
-    }
-    picture_ = gl::Texture2D::create(memory_, "frame: picture", GL_RGBA8, width, height);
-    picture_framebuffer_ = gl::Framebuffer::create("picture", {{GL_COLOR_ATTACHMENT0, &picture_}});
+    targets_.reset();  // both at once may not fit
+    silhouettes_.reset();
+    targets_ = std::make_unique<Targets>(needs, memory_);
+    if (needs.antialias == Antialias::coverage)
+        silhouettes_ = std::make_unique<Silhouettes>(needs.width, needs.height, needs.has_overlay, memory_);
 }
 
-// Runs `body` on each rectangle with its G-buffer drawn; one that is still there is not drawn again.
-void Pipeline::for_each_rectangle(const RectangleFn& body) {
-    for (const Rectangle& rectangle : rectangles_) {
-        if (drawn_in_gbuffer_ != &rectangle) {
-            drawn_in_gbuffer_ = nullptr;
-            draw_gbuffer(rectangle);
-            drawn_in_gbuffer_ = &rectangle;
-        }
-        body(rectangle);
+// Copies what is shown of a piece into an array of the whole picture, with row 0 at the top.
+template <typename T>
+void Pipeline::read_shown(const gl::Framebuffer& framebuffer, GLenum attachment, GLenum format,
+                          const Piece& piece, std::vector<T>& picture) const {
+    const auto components = static_cast<int>(gl::texel_bytes(format) / sizeof(T));
+    const std::vector<T> pixels = gl::read_pixels<T>(
+        framebuffer, attachment, piece.shown.x - piece.drawn.x, piece.shown.y - piece.drawn.y,
+        piece.shown.width, piece.shown.height, gl::transfer_format(format), components);
+    const auto row_length = static_cast<std::ptrdiff_t>(piece.shown.width) * components;
+    for (int row = 0; row < piece.shown.height; ++row) {
+        const int picture_row = request_.height - 1 - (piece.shown.y + row);
+        const auto target =
+            (static_cast<std::ptrdiff_t>(picture_row) * request_.width + piece.shown.x) * components;
+        std::copy_n(pixels.begin() + row * row_length, row_length, picture.begin() + target);
     }
-}
-
-void Pipeline::draw_gbuffer(const Rectangle& rectangle) {
-    const gl::PassTimer timer(&timings_, "terrain");
-    view_block_.picture.x = rectangle.x;
-    view_block_.picture.y = rectangle.y;
-    view_buffer_.update(0, sizeof(ViewBlock), &view_block_);
-    view_buffer_.bind_base(GL_UNIFORM_BUFFER, 0);
-    gbuffer_.begin();
-    glViewport(-rectangle.x, -rectangle.y, request_.width, request_.height);
-    glEnable(GL_DEPTH_TEST);
-    triangles_ = terrain_->draw(tiles_, programs_);
-    glDisable(GL_DEPTH_TEST);
-}
-
-void Pipeline::draw_overlay() {
-    for (const auto& technique : techniques_) {
-        const gl::PassTimer timer(&timings_, technique->name());
-        overlay_framebuffer_.bind();
-        technique->draw(view_, gbuffer_.view(), programs_);
-    }
-}
-
-void Pipeline::compose() {
-    const gl::PassTimer timer(&timings_, "compose");
-    gl::Program& program = programs_.get("compose", techniques_.empty() ? gl::Flags{} : gl::Flags{"OVERLAY"});
-    picture_framebuffer_.bind();
-    program.use();
-    program.set("surface_texture", 1);
-    gbuffer_.surface.bind(1);
-    program.set("base_texture", 2);
-    gbuffer_.base.bind(2);
-    if (!techniques_.empty()) {
-        program.set("overlay_texture", 3);
-        overlay_.bind(3);
-        program.set("layer_shading", static_cast<float>(scene_->relief.on_layers));
-    }
-    const auto color = [](const std::array<float, 4>& c) { return glm::vec4(c[0], c[1], c[2], c[3]); };
-    program.set("sky_low", color(request_.background.low));
-    program.set("sky_high", color(request_.background.high));
-    no_vertices_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 std::vector<uint8_t> Pipeline::draw_image() {
     const size_t bytes = 4 * static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     const MemoryCharge charge(memory_, "frame: image", bytes);
     std::vector<uint8_t> image(bytes);
-    for_each_rectangle([&](const Rectangle& rectangle) {
-        draw_overlay();
-        compose();
-        const gl::PassTimer timer(&timings_, "readback");
-        place(gl::read_pixels<uint8_t>(picture_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0, rectangle.width,
-                                       rectangle.height, gl::transfer_format(GL_RGBA8), 4),
-              rectangle, 4, request_.width, request_.height, image);
-    });
+    silhouette_pixels_ = 0;
+    for (const Piece& piece : pieces_) {
+        draw_picture(piece);
+        {
+            const gl::PassTimer timer(&timings_, "readback");
+            read_shown(targets_->picture_framebuffer, GL_COLOR_ATTACHMENT0, GL_RGBA8, piece, image);
+        }
+        if (silhouettes_)
+            redraw_silhouettes(piece, image);
+    }
     gl::check_errors("drawing the picture");
     return image;
 }
@@ -234,17 +213,16 @@ std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     if (techniques_.empty())
         return ids;
     const gl::Texture2D target =
-        gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, gbuffer_.width(), gbuffer_.height());
+        gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, targets_->needs.width, targets_->needs.height);
     const gl::Framebuffer framebuffer = gl::Framebuffer::create("ids", {{GL_COLOR_ATTACHMENT0, &target}});
-    for_each_rectangle([&](const Rectangle& rectangle) {
+    for (const Piece& piece : pieces_) {
+        draw_centres(piece);
         for (size_t i = 0; i < techniques_.size(); ++i) {
             framebuffer.bind();
-            techniques_[i]->draw_ids(view_, gbuffer_.view(), programs_);
-            place(gl::read_pixels<uint32_t>(framebuffer, GL_COLOR_ATTACHMENT0, 0, 0, rectangle.width,
-                                            rectangle.height, gl::transfer_format(GL_R32UI), 1),
-                  rectangle, 1, request_.width, request_.height, ids[i]);
+            techniques_[i]->draw_ids(view_, targets_->seen.gbuffer.view(), programs_);
+            read_shown(framebuffer, GL_COLOR_ATTACHMENT0, GL_R32UI, piece, ids[i]);
         }
-    });
+    }
     gl::check_errors("drawing ids");
     return ids;
 }
@@ -253,14 +231,12 @@ void Pipeline::draw_surface(std::vector<double>& world, std::vector<float>& dept
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     std::vector<uint32_t> positions(4 * pixels);
     std::vector<float> surfaces(4 * pixels);
-    for_each_rectangle([&](const Rectangle& rectangle) {
-        place(gl::read_pixels<uint32_t>(gbuffer_.framebuffer, GL_COLOR_ATTACHMENT0, 0, 0, rectangle.width,
-                                        rectangle.height, gl::transfer_format(GL_RGBA32UI), 4),
-              rectangle, 4, request_.width, request_.height, positions);
-        place(gl::read_pixels<float>(gbuffer_.framebuffer, GL_COLOR_ATTACHMENT1, 0, 0, rectangle.width,
-                                     rectangle.height, gl::transfer_format(GL_RGBA32F), 4),
-              rectangle, 4, request_.width, request_.height, surfaces);
-    });
+    for (const Piece& piece : pieces_) {
+        draw_centres(piece);
+        const gl::Framebuffer& framebuffer = targets_->seen.gbuffer.framebuffer;
+        read_shown(framebuffer, GL_COLOR_ATTACHMENT0, GL_RGBA32UI, piece, positions);
+        read_shown(framebuffer, GL_COLOR_ATTACHMENT1, GL_RGBA32F, piece, surfaces);
+    }
     gl::check_errors("reading the surface");
     unpack_surface(positions, surfaces, request_, scene_->positions, view_block_.forward.w, world, depth);
 }
@@ -268,15 +244,15 @@ void Pipeline::draw_surface(std::vector<double>& world, std::vector<float>& dept
 double Pipeline::time_floor() {
     gl::Program& program = programs_.get("floor");
     TimingLog log(true);
-    for_each_rectangle([&](const Rectangle&) {
+    for (const Piece& piece : pieces_) {
+        draw_centres(piece);
         const gl::PassTimer timer(&log, "floor");
-        picture_framebuffer_.bind();
+        targets_->picture_framebuffer.bind();
         program.use();
         program.set("depth_texture", 0);
-        gbuffer_.depth.bind(0);
-        no_vertices_.bind();
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-    });
+        targets_->seen.gbuffer.depth.bind(0);
+        draw_full_screen();
+    }
     return log.total();
 }
 

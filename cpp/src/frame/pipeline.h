@@ -3,7 +3,7 @@
 //     for each rectangle:  G-buffer ─▶ overlay, one pass a technique ─▶ compose ─▶ read back
 //
 // A picture larger than a rectangle is drawn piece by piece with the projection and the levels of detail of
-// the whole, so the pieces fit without a seam.
+// the whole, so the pieces fit without a seam. pipeline.cpp sets up and reads back, picture_passes.cpp draws.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,9 @@
 
 #include "decalgl/frame/picture_request.h"
 #include "decalgl/frame/renderer.h"
-#include "frame/gbuffer.h"
 #include "frame/prepared_scene.h"
+#include "frame/silhouettes.h"
+#include "frame/targets.h"
 #include "frame/terrain_mesh.h"
 #include "gl/context.h"
 
@@ -41,17 +42,40 @@ public:
     TimingLog& timings() { return timings_; }
     std::vector<std::string> variants() const { return programs_.variants(); }
     uint64_t triangles() const { return triangles_; }
+    // Of the last picture: pixels that were drawn anew since more than one surface is seen in them.
+    uint64_t silhouette_pixels() const { return silhouette_pixels_; }
 
 private:
-    using RectangleFn = std::function<void(const Rectangle&)>;
+    // A rectangle of the picture. What is drawn reaches beyond what is shown where passes look at neighbours.
+    struct Piece {
+        Rectangle shown;
+        Rectangle drawn;
+    };
+    using PieceFn = std::function<void(const Piece&)>;
 
     void upload(std::shared_ptr<const PreparedScene> scene);
-    void choose_rectangles();
+    void choose_pieces();
     void make_targets();
-    void for_each_rectangle(const RectangleFn& body);
-    void draw_gbuffer(const Rectangle& rectangle);
-    void draw_overlay();
-    void compose();
+    int multisamples() const;
+    template <typename T>
+    void read_shown(const gl::Framebuffer& framebuffer, GLenum attachment, GLenum format, const Piece& piece,
+                    std::vector<T>& picture) const;
+
+    void draw_picture(const Piece& piece);
+    void set_sample(const Piece& piece, glm::vec2 jitter);
+    void draw_centres(const Piece& piece);
+    void draw_terrain(const Piece& piece, gl::Flags flags);
+    void draw_overlay(const SeenTargets& seen, Antialias antialias);
+    void compose(const SeenTargets& seen, const gl::Framebuffer& target, gl::Flags flags);
+    void draw_samples(const Piece& piece);
+    void draw_multisamples(const Piece& piece);
+    void take_sample(int index);
+    void add_sample();
+    void show_mean(int samples);
+    void redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image);
+    std::vector<uint8_t> draw_gathered(const Piece& piece, Span<const uint32_t> pixels);
+    void smooth_edges(const Piece& piece);
+    void draw_full_screen();
 
     MemoryAccount memory_;
     std::unique_ptr<gl::Context> context_;
@@ -69,16 +93,13 @@ private:
     gl::Buffer view_buffer_;
     gl::VertexArray no_vertices_;
     std::vector<VisibleTile> tiles_;
-    std::vector<Rectangle> rectangles_;
+    std::vector<Piece> pieces_;
     uint64_t triangles_ = 0;
+    uint64_t silhouette_pixels_ = 0;
 
-    GBuffer gbuffer_;
-    const void* drawn_in_gbuffer_ = nullptr;  // the rectangle it holds, when there is just one
-    gl::Texture2D overlay_;
-    gl::Texture2D overlay_depth_;  // for techniques that need it
-    gl::Framebuffer overlay_framebuffer_;
-    gl::Texture2D picture_;
-    gl::Framebuffer picture_framebuffer_;
+    std::unique_ptr<Targets> targets_;
+    std::unique_ptr<Silhouettes> silhouettes_;  // with coverage
+    const Piece* at_centres_ = nullptr;         // the piece whose pixel centres the G-buffer holds, if any
 };
 
 }  // namespace decalgl

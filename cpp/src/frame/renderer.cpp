@@ -7,6 +7,7 @@
 #include "decalgl/core/error.h"
 #include "frame/pipeline.h"
 #include "frame/prepared_file.h"
+#include "frame/sample_pattern.h"
 #include "frame/stats.h"
 
 namespace decalgl {
@@ -28,6 +29,9 @@ void require_options(const RendererOptions& options) {
                         std::to_string(options.width) + " x " + std::to_string(options.height));
     if (!(options.terrain_error >= 0.0))
         throw Error(ErrorKind::input, "terrain_error must be zero or more pixels");
+    if (!has_sample_pattern(options.samples))
+        throw Error(ErrorKind::input,
+                    "samples must be 1, 2, 4, 8, 16 or 32, but it is " + std::to_string(options.samples));
     if (options.rectangle < 0)
         throw Error(ErrorKind::input, "rectangle must be zero or more pixels");
     if (options.index != "grid" && options.index != "bvh")

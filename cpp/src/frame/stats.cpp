@@ -22,6 +22,7 @@ FrameStats collect_stats(Pipeline& pipeline, const PreparedScene& scene, const M
         sum.quantum = std::max(sum.quantum, counts.quantum);
     }
     stats.counts = {{"triangles", static_cast<double>(pipeline.triangles())},
+                    {"silhouette_pixels", static_cast<double>(pipeline.silhouette_pixels())},
                     {"features", static_cast<double>(sum.features)},
                     {"segments", static_cast<double>(sum.segments)},
                     {"pieces", static_cast<double>(sum.pieces)},

@@ -77,6 +77,8 @@ TerrainMesh::TerrainMesh(const PreparedScene& scene, const MemoryAccount& memory
         ramp_.set_filter(GL_LINEAR, GL_LINEAR);
     }
 
+    levels_ = gl::Texture2D::create(memory, "terrain: levels", GL_R8UI, std::max(1, scene.tiles.columns),
+                                    std::max(1, scene.tiles.rows));
     vertices_ = gl::VertexArray::create();
     for (int level = 0; level < tile_levels; ++level)
         elements_[static_cast<size_t>(level)] =
@@ -88,7 +90,6 @@ void TerrainMesh::set_look(gl::Program& program) const {
     heights_.bind(0);
     program.set("illumination", 1);
     illumination_.bind(1);
-    program.set("stand_in_height", lowest_);
     program.set("hillshade", glm::vec3(std::sin(relief_.altitude * radians), relief_.strength, 0.0));
     program.set("base_color", glm::vec3(relief_.color[0], relief_.color[1], relief_.color[2]) / 255.0F);
     if (ramp_) {
@@ -98,8 +99,28 @@ void TerrainMesh::set_look(gl::Program& program) const {
     }
 }
 
-uint64_t TerrainMesh::draw(const std::vector<VisibleTile>& tiles, gl::ProgramLibrary& programs) const {
-    gl::Flags flags;
+void TerrainMesh::set_for_rays(gl::Program& program) const {
+    set_look(program);
+    program.set("tile_levels", 3);
+    levels_.bind(3);
+}
+
+gl::Flags TerrainMesh::ray_flags() const {
+    return ramp_ ? gl::Flags{"RAMP"} : gl::Flags{};
+}
+
+void TerrainMesh::set_levels(const std::vector<VisibleTile>& tiles) {
+    std::vector<uint8_t> texels(static_cast<size_t>(levels_.width()) * static_cast<size_t>(levels_.height()));
+    for (const VisibleTile& visible : tiles) {
+        const auto row = static_cast<size_t>(visible.tile->row / tile_quads);
+        const auto column = static_cast<size_t>(visible.tile->column / tile_quads);
+        texels[row * static_cast<size_t>(levels_.width()) + column] = static_cast<uint8_t>(visible.level);
+    }
+    levels_.update(0, 0, 0, levels_.width(), levels_.height(), texels.data());
+}
+
+uint64_t TerrainMesh::draw(const std::vector<VisibleTile>& tiles, gl::Flags flags,
+                           gl::ProgramLibrary& programs) const {
     if (has_holes_)
         flags.insert("HOLES");
     if (ramp_)
@@ -107,6 +128,7 @@ uint64_t TerrainMesh::draw(const std::vector<VisibleTile>& tiles, gl::ProgramLib
     gl::Program& program = programs.get("terrain", flags);
     program.use();
     set_look(program);
+    program.set("stand_in_height", lowest_);
     vertices_.bind();
     uint64_t triangles = 0;
     int bound_level = -1;

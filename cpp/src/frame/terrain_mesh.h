@@ -18,18 +18,25 @@ public:
     // Throws Error(memory) where the terrain is larger than the driver's textures or the budget.
     TerrainMesh(const PreparedScene& scene, const MemoryAccount& memory);
 
-    // Draws into the bound G-buffer; returns the number of triangles.
-    uint64_t draw(const std::vector<VisibleTile>& tiles, gl::ProgramLibrary& programs) const;
+    // Draws into the bound G-buffer, with the program's flags that the G-buffer asks for; returns the number of
+    // triangles.
+    uint64_t draw(const std::vector<VisibleTile>& tiles, gl::Flags flags, gl::ProgramLibrary& programs) const;
+
+    // For rays that are followed over the terrain (terrain/march.glsl): the levels of detail of visible tiles, the
+    // flags of the program, and its uniforms.
+    void set_levels(const std::vector<VisibleTile>& tiles);
+    gl::Flags ray_flags() const;
+    void set_for_rays(gl::Program& program) const;
 
 private:
     void set_look(gl::Program& program) const;
-
     Relief relief_;
     bool has_holes_ = false;
     float lowest_ = 0.0F;
     gl::Texture2D heights_;
     gl::Texture2D illumination_;
     gl::Texture2D ramp_;
+    gl::Texture2D levels_;  // a texel a tile
     gl::VertexArray vertices_;
     std::array<gl::Buffer, tile_levels> elements_;
 };

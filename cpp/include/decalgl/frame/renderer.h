@@ -21,6 +21,7 @@ struct RendererOptions {
     int width = 1280;
     int height = 720;
     Antialias antialias = Antialias::coverage;
+    int samples = 8;  // a pixel, of ssaa and msaa: 1, 2, 4, 8, 16 or 32
     double terrain_error =
         0.5;                    // pixels on the screen that the terrain's level of detail may be off; 0: none
     uint64_t memory_limit = 0;  // bytes for prepared data and GL objects together; 0: no limit

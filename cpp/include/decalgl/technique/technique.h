@@ -80,7 +80,14 @@ public:
     virtual void save(ArchiveWriter& archive, const std::string& prefix) const = 0;
 };
 
-enum class Antialias { none, coverage };
+// What a pixel shows of the picture.
+enum class Antialias {
+    none,      // its centre
+    coverage,  // the mean over its area, worked out by the techniques
+    ssaa,      // the mean of samples, each a whole picture
+    msaa,      // the same, with the driver's samples as far as they go
+    fxaa       // its centre, smoothed along the edges that the picture shows
+};
 // What antialias coverage is: the mean over the pixel's area, or what Thöny et al. 2018, section 3.5, estimate
 // for lines.
 enum class CoverageRule { exact, thoeny };
@@ -90,13 +97,14 @@ struct View {
     int width = 0;  // of the whole picture, in pixels
     int height = 0;
     PositionGrid positions;
-    Antialias antialias = Antialias::none;
-    double widest_pixel = 0.0;  // metres that the farthest pixel is wide, seen head-on
+    Antialias antialias = Antialias::none;  // none or coverage: the others are made of pictures without
+    double widest_pixel = 0.0;              // metres that the farthest pixel is wide, seen head-on
     CoverageRule coverage = CoverageRule::exact;
 };
 
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y
-// (shaders/shared/position.glsl). surface: terrain gradient, distance along the pixel's ray.
+// (shaders/shared/position.glsl). surface: terrain gradient, distance along the pixel's ray. Without coverage,
+// texels may have been gathered from anywhere in the picture: what they show follows from these two alone.
 struct GBufferView {
     const gl::Texture2D* position = nullptr;
     const gl::Texture2D* surface = nullptr;

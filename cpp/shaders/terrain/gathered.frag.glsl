@@ -1,0 +1,120 @@
+// The G-buffer of samples of pixels through which a silhouette passes.
+//
+// What a sample sees lies near what the pixel or a neighbour sees at its centre. So its ray is followed for a few cells
+// around the nearest of those places, then around the nearest of those that lie behind, and so on. Where it meets
+// nothing, the sample sees the sky if one of the neighbours does, or else the plane at the pixel's centre. Where ground
+// is seen at so flat an angle that a pixel spans many cells, the planes stand for it.
+//
+// RAMP   colours by height
+#define GATHERED 1
+#include "terrain/march.glsl"
+
+uniform sampler2D surface_texture;  // at the pixels' centres
+uniform ivec2 drawn_size;
+uniform float no_distance;  // infinity
+
+const int most_looks = 4;
+
+// What is seen at the centre of a pixel or a neighbour.
+struct Centre {
+    vec4 surface;  // as out_surface
+    vec2 offset;   // of the centre, in pixels from the sample
+};
+
+// The nearest ground beyond a distance that is seen at the centre of a pixel or a neighbour; sky if there is none.
+Centre nearest_beyond(float distance, ivec2 pixel, vec2 sample_offset) {
+    Centre nearest = Centre(vec4(no_distance), vec2(0.0));
+    for (int i = 0; i < 9; ++i) {
+        ivec2 beside = clamp(pixel + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), drawn_size - 1);
+        vec4 surface = texelFetch(surface_texture, beside, 0);
+        if (surface.z > distance && surface.z < nearest.surface.z)
+            nearest = Centre(surface, vec2(beside - pixel) - sample_offset);
+    }
+    return nearest;
+}
+
+bool is_beside_sky(ivec2 pixel) {
+    bool sky = false;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 beside = clamp(pixel + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), drawn_size - 1);
+        sky = sky || isinf(texelFetch(surface_texture, beside, 0).z);
+    }
+    return sky;
+}
+
+// What a sample sees: gradient and distance along its ray; where nothing is known, how far nothing is.
+struct Sight {
+    bool known;
+    vec2 gradient;
+    float distance;
+};
+
+// The distance along a sample's ray to the plane that is seen at a pixel's centre.
+float distance_to_plane(vec2 pixel, Centre centre) {
+    vec3 normal = vec3(-centre.surface.xy, 1.0);
+    vec2 place = pixel + centre.offset;
+    vec3 seen = ray_origin_at(place) + centre.surface.z * ray_direction_at(place);
+    return dot(normal, seen - ray_origin_at(pixel)) / dot(normal, ray_direction_at(pixel));
+}
+
+// Metres along the ray from one pixel to the next, on a plane.
+float reach_of(vec2 pixel, vec4 surface) {
+    vec3 normal = vec3(-surface.xy, 1.0);
+    vec3 dx = ray_origin_dx.xyz + surface.z * ray_direction_dx.xyz;
+    vec3 dy = ray_origin_dy.xyz + surface.z * ray_direction_dy.xyz;
+    return (abs(dot(normal, dx)) + abs(dot(normal, dy))) / abs(dot(normal, ray_direction_at(pixel)));
+}
+
+bool is_over_terrain(vec3 relative) {
+    vec2 steps = vec2(relative.x, -relative.y) / spacing.xy + base_sample_fraction.xy;
+    return is_cell(base_sample.xy + ivec2(floor(steps)));
+}
+
+// Looks where the surface that is seen at a pixel's centre would be.
+Sight look(vec2 pixel, Centre centre) {
+    vec4 surface = centre.surface;
+    vec3 origin = ray_origin_at(pixel);
+    vec3 direction = ray_direction_at(pixel);
+    float cell = max(spacing.x, spacing.y) / length(direction.xy);
+    float reach = 1.5 * reach_of(pixel, surface);
+    float on_plane = clamp(distance_to_plane(pixel, centre), surface.z - reach, surface.z + reach);
+    float from = max(min(surface.z, on_plane) - 0.25 * reach - cell, base_offset.w);
+    float until = max(surface.z, on_plane) + 0.25 * reach + cell;
+    bool from_below = dot(vec3(-surface.xy, 1.0), direction) > 0.0;
+    Triangle met;
+    int found = march(origin, direction, from, until, from_below, met);
+    if (found == ground_met) {
+        vec2 gradient = gradient_of(met);
+        return Sight(true, gradient, distance_along_ray(met, gradient, origin, direction));
+    }
+    bool stands_for_it = found == not_known && is_over_terrain(origin + on_plane * direction);
+    return Sight(stands_for_it, surface.xy, stands_for_it ? on_plane : until);
+}
+
+void write_sky() {
+    out_position = uvec4(sky_block);
+    out_surface = vec4(0.0, 0.0, no_distance, 1.0);
+    out_base = vec4(0.0);
+}
+
+void main() {
+    vec2 pixel = pixel_from_centre();
+    ivec2 own_pixel = gathered_pixel();
+    vec2 sample_offset = gathered_offset();
+    Sight sight = Sight(false, vec2(0.0), base_offset.w);
+    int looks = 0;
+    bool more = true;
+    do {
+        Centre next = nearest_beyond(sight.distance, own_pixel, sample_offset);
+        more = !sight.known && !isinf(next.surface.z);
+        if (more) sight = look(pixel, next);
+        ++looks;
+    } while (more && looks < most_looks);
+    Centre own = Centre(texelFetch(surface_texture, own_pixel, 0), -sample_offset);
+    if (!sight.known && is_beside_sky(own_pixel)) {
+        write_sky();
+    } else {
+        if (!sight.known) sight = Sight(true, own.surface.xy, distance_to_plane(pixel, own));
+        write_surface(pixel, sight.gradient, sight.distance);
+    }
+}

@@ -1,0 +1,61 @@
+// Pixels through which a silhouette of the terrain passes, drawn anew as the mean of samples.
+//
+//     G-buffer ─▶ marks ─▶ list ─▶ G-buffer of 16 texels a pixel ─▶ overlay ─▶ compose ─▶ means
+//                           CPU    by rays: terrain/gathered.frag.glsl
+//
+// Such pixels are few, so what they see is gathered in textures of its own, batch after batch, and neither the
+// terrain's triangles nor the rest of the picture are touched again.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "decalgl/frame/picture_request.h"
+#include "frame/targets.h"
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/vertex_array.h"
+
+namespace decalgl {
+
+class Silhouettes {
+public:
+    // For rectangles of at most this size.
+    Silhouettes(int width, int height, bool has_overlay, const MemoryAccount& memory);
+
+    // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
+    // that of the pixels' centres.
+    std::vector<uint32_t> find(const GBuffer& centres, const Rectangle& drawn, const Rectangle& shown,
+                               gl::ProgramLibrary& programs);
+
+    static constexpr size_t batch_size = 32768;
+    // Makes a batch of pixels the ones that programs with the flag GATHERED see.
+    void gather(Span<const uint32_t> pixels);
+    void set_gathered(gl::Program& program) const;
+    // The rows of texels that the batch fills.
+    int used_rows() const;
+
+    const SeenTargets& seen() const { return *seen_; }
+    const gl::Framebuffer& composed() const { return composed_framebuffer_; }
+    // Of the batch's pixels, R, G, B, A with straight alpha, once it is composed.
+    std::vector<uint8_t> means(gl::ProgramLibrary& programs);
+
+private:
+    void make_batch_targets();
+
+    MemoryAccount memory_;
+    bool has_overlay_ = false;
+    gl::VertexArray no_vertices_;
+    gl::Texture2D marks_;
+    gl::Framebuffer marks_framebuffer_;
+    gl::TextureBuffer pixels_;
+    size_t count_ = 0;
+    std::unique_ptr<SeenTargets> seen_;  // made when first needed
+    gl::Texture2D composed_;
+    gl::Framebuffer composed_framebuffer_;
+    gl::Texture2D means_;
+    gl::Framebuffer means_framebuffer_;
+};
+
+}  // namespace decalgl
