@@ -55,8 +55,7 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     group.covered = (header & COVERS) != 0u ? all_samples : 0u;
     float scale = 1.0;
     group.half_width = 0.0;
-#ifdef LINES
-#ifdef STYLES
+#if defined(STYLES)
     group.clip = (header & CLIP) != 0u;
     group.style = style_of(group.slot, half_width_of(group.slot));
     group.style.half_width *= width_factor(group.style);
@@ -66,11 +65,10 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     scale = group.line ? group.style.scale : 1.0;
     group.half_width = group.style.half_width;
     foot = group.metric * foot;
-#else
+#elif defined(LINES)
     vec2 stroke = group.line ? stroke_of(header) : vec2(1.0, 0.0);
     scale = stroke.x;
     group.half_width = stroke.y;
-#endif
 #endif
 #ifdef BANDS
     for (int i = 0; i < sample_count; ++i) shares[i] = group.covered != 0u ? 0.0 : not_covered;
