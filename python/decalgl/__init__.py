@@ -29,6 +29,7 @@ from .errors import (
 from .features import FeatureTable
 from .frame import Frame, Picked, PreparedLayer, Stats
 from .indexes import BvhIndex
+from .lens import Lens
 from .renderer import Renderer
 from .scene import Layer, Relief, Scene
 from .scene_file import load_scene
@@ -50,6 +51,7 @@ __all__ = [
     "GraphicsError",
     "InputError",
     "Layer",
+    "Lens",
     "MemoryLimitError",
     "Picked",
     "PreparedLayer",

@@ -87,6 +87,7 @@ class Layer:
         or each over its own feature's.
     draw_order: int64 (features), features from bottom to top.
     coloring: how the colours came about, for legends.
+    attributes: the columns beside the geometry, for restyling by them.
     """
 
     name: str
@@ -99,6 +100,7 @@ class Layer:
     casing: Stroke | None = field(default=None, repr=False)
     outline_mode: OutlineMode = "normal"
     outline_order: OutlineOrder = "layer"
+    attributes: Attributes | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         self.draw_order.flags.writeable = False
@@ -337,7 +339,7 @@ class Scene:
             if repr(name) in str(error):
                 raise
             raise StyleError(f"Layer {name!r}: {error}") from error
-        draw_order = _draw_order(order, table, attributes)
+        draw_order = draw_order_of(order, table, attributes)
         layer = Layer(
             name,
             len(self._layers),
@@ -348,6 +350,7 @@ class Scene:
             stroke=None
             if kind == "polygons"
             else Stroke(coloring.colors, self._widths(width, table, attributes)),
+            attributes=attributes,
         )
         self._layers.append(layer)
         return layer
@@ -440,7 +443,8 @@ def _require_line_style(layer_name: str, width_units: str, corner: str, cap: str
             )
 
 
-def _draw_order(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
+def draw_order_of(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
+    """Features from bottom to top: "feature", "size", a column or numbers. Raises ColumnError, InputError."""
     if isinstance(order, str) and order == "feature":
         return np.arange(len(table), dtype=np.int64)
     if isinstance(order, str) and order == "size":

@@ -34,6 +34,12 @@ bool same_view(const PictureRequest& a, const PictureRequest& b) {
            a.width == b.width && a.height == b.height && a.terrain_error == b.terrain_error;
 }
 
+// Whether any layer is seen: else there is no overlay, and no texture for one.
+bool has_overlay(const PreparedScene& scene) {
+    return std::any_of(scene.passes.begin(), scene.passes.end(),
+                       [](const PreparedPass& pass) { return pass.shows_anything(); });
+}
+
 // Copies a rectangle, whose rows come bottom first, into an array of the whole picture with row 0 at the top.
 template <typename T>
 void place(const std::vector<T>& pixels, const Rectangle& rectangle, int components, int width, int height,
@@ -67,35 +73,55 @@ bool Pipeline::draws(const PreparedScene* scene, const PictureRequest& request) 
 }
 
 void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
-    // The old scene goes first: both at once may not fit.
-    techniques_.clear();
-    terrain_.reset();
-    scene_.reset();
-    terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
-    for (const PreparedPass& pass : scene->passes) {
-        techniques_.push_back(make_technique(pass.technique));
-        techniques_.back()->upload(pass.prepared, memory_);
+    const auto techniques_of = [](const PreparedScene& of) {
+        std::vector<std::string> names;
+        for (const PreparedPass& pass : of.passes)
+            names.push_back(pass.technique);
+        return names;
+    };
+    const bool is_change =
+        scene_ && scene_->shares_ground(*scene) && techniques_of(*scene_) == techniques_of(*scene);
+    try {
+        if (!is_change) {
+            // The old scene goes first: both at once may not fit.
+            techniques_.clear();
+            terrain_.reset();
+            scene_.reset();
+            terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
+            for (const PreparedPass& pass : scene->passes)
+                techniques_.push_back(make_technique(pass.technique));
+        }
+        for (size_t i = 0; i < techniques_.size(); ++i)
+            techniques_[i]->upload(scene->passes[i].prepared, scene->passes[i].in_lens, memory_);
+        gl::check_errors("uploading the scene");
+    } catch (...) {
+        scene_.reset();
+        throw;
     }
-    gl::check_errors("uploading the scene");
     scene_ = std::move(scene);
 }
 
 UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
-    timings_.clear();
     drawn_in_gbuffer_ = nullptr;
+    return update_layers(std::move(scene), request);
+}
+
+UpdateReport Pipeline::update_layers(std::shared_ptr<const PreparedScene> scene,
+                                     const PictureRequest& request) {
+    timings_.clear();
+    const bool shows_surface = drawn_in_gbuffer_ != nullptr && scene_ && scene_->shares_ground(*scene) &&
+                               same_view(request_, request) &&
+                               static_cast<bool>(overlay_) == has_overlay(*scene);
+    if (!shows_surface)
+        drawn_in_gbuffer_ = nullptr;
     if (scene_ != scene) {
         const gl::PassTimer timer(&timings_, "upload");
         upload(std::move(scene));
     }
     request_ = request;
-    tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
-                          request.terrain_error);
-    view_ = {request.width, request.height, scene_->positions, request.antialias,
-             widest_pixel(tiles_, scene_->terrain, request.camera, request.height)};
-    view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
-                                  scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
-    choose_rectangles();
-    make_targets();
+    if (!shows_surface)
+        set_view();
+    view_.antialias = request.antialias;
     UpdateReport report;
     report.shader_steps = context_->info().software ? software_shader_steps : 0;
     for (const auto& technique : techniques_) {
@@ -105,6 +131,18 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
         report.longest_walk = std::max(report.longest_walk, part.longest_walk);
     }
     return report;
+}
+
+void Pipeline::set_view() {
+    const PictureRequest& request = request_;
+    tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
+                          request.terrain_error);
+    view_ = {request.width, request.height, scene_->positions, request.antialias,
+             widest_pixel(tiles_, scene_->terrain, request.camera, request.height)};
+    view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
+                                  scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
+    choose_rectangles();
+    make_targets();
 }
 
 void Pipeline::choose_rectangles() {
@@ -127,16 +165,16 @@ void Pipeline::choose_rectangles() {
 void Pipeline::make_targets() {
     const int width = rectangles_.front().width;
     const int height = rectangles_.front().height;
-    const bool has_overlay = !techniques_.empty();
+    const bool is_laid_over = has_overlay(*scene_);
     const bool fits = picture_ && gbuffer_.width() == width && gbuffer_.height() == height &&
-                      static_cast<bool>(overlay_) == has_overlay;
+                      static_cast<bool>(overlay_) == is_laid_over;
     if (fits)
         return;
     gbuffer_ = GBuffer();
     overlay_ = gl::Texture2D();
     picture_ = gl::Texture2D();
     gbuffer_ = GBuffer(width, height, memory_);
-    if (has_overlay) {
+    if (is_laid_over) {
         overlay_ = gl::Texture2D::create(memory_, "frame: overlay", GL_RGBA8, width, height);
         overlay_framebuffer_ = gl::Framebuffer::create("overlay", {{GL_COLOR_ATTACHMENT0, &overlay_}});
     }
@@ -169,24 +207,42 @@ void Pipeline::draw_gbuffer(const Rectangle& rectangle) {
     glDisable(GL_DEPTH_TEST);
 }
 
+bool Pipeline::has_lens() const {
+    return scene_->lens && has_overlay(*scene_);
+}
+
+// The G-buffer with the mask of the lens, drawn for the rectangle that it holds.
+GBufferView Pipeline::look_through_lens() {
+    GBufferView view = gbuffer_.view();
+    if (!has_lens())
+        return view;
+    const gl::PassTimer timer(&timings_, "lens");
+    lens_mask_.draw(scene_->lens, request_, scene_->positions, gbuffer_, programs_, memory_);
+    view.lens = &lens_mask_.texture();
+    return view;
+}
+
 void Pipeline::draw_overlay() {
-    for (const auto& technique : techniques_) {
-        const gl::PassTimer timer(&timings_, technique->name());
+    const GBufferView view = look_through_lens();
+    for (size_t i = 0; i < techniques_.size(); ++i) {
+        if (!scene_->passes[i].shows_anything())
+            continue;
+        const gl::PassTimer timer(&timings_, techniques_[i]->name());
         overlay_framebuffer_.bind();
-        technique->draw(view_, gbuffer_.view(), programs_);
+        techniques_[i]->draw(view_, view, programs_);
     }
 }
 
 void Pipeline::compose() {
     const gl::PassTimer timer(&timings_, "compose");
-    gl::Program& program = programs_.get("compose", techniques_.empty() ? gl::Flags{} : gl::Flags{"OVERLAY"});
+    gl::Program& program = programs_.get("compose", overlay_ ? gl::Flags{"OVERLAY"} : gl::Flags{});
     picture_framebuffer_.bind();
     program.use();
     program.set("surface_texture", 1);
     gbuffer_.surface.bind(1);
     program.set("base_texture", 2);
     gbuffer_.base.bind(2);
-    if (!techniques_.empty()) {
+    if (overlay_) {
         program.set("overlay_texture", 3);
         overlay_.bind(3);
         program.set("layer_shading", static_cast<float>(scene_->relief.on_layers));
@@ -217,15 +273,18 @@ std::vector<uint8_t> Pipeline::draw_image() {
 std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     std::vector<std::vector<uint32_t>> ids(techniques_.size(), std::vector<uint32_t>(pixels, 0));
-    if (techniques_.empty())
+    if (!overlay_)
         return ids;
     const gl::Texture2D target =
         gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, gbuffer_.width(), gbuffer_.height());
     const gl::Framebuffer framebuffer = gl::Framebuffer::create("ids", {{GL_COLOR_ATTACHMENT0, &target}});
     for_each_rectangle([&](const Rectangle& rectangle) {
+        const GBufferView view = look_through_lens();
         for (size_t i = 0; i < techniques_.size(); ++i) {
+            if (!scene_->passes[i].shows_anything())
+                continue;
             framebuffer.bind();
-            techniques_[i]->draw_ids(view_, gbuffer_.view(), programs_);
+            techniques_[i]->draw_ids(view_, view, programs_);
             place(gl::read_pixels<uint32_t>(framebuffer, GL_COLOR_ATTACHMENT0, 0, 0, rectangle.width,
                                             rectangle.height, gl::transfer_format(GL_R32UI), 1),
                   rectangle, 1, request_.width, request_.height, ids[i]);

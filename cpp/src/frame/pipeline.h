@@ -13,6 +13,7 @@
 #include "decalgl/frame/picture_request.h"
 #include "decalgl/frame/renderer.h"
 #include "frame/gbuffer.h"
+#include "frame/lens_mask.h"
 #include "frame/prepared_scene.h"
 #include "frame/terrain_mesh.h"
 #include "gl/context.h"
@@ -28,6 +29,8 @@ public:
     // Uploads what is not there yet and sets the view up. Throws Error(memory) where the picture is larger
     // than the driver can draw or the budget holds.
     UpdateReport update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
+    // The same, but what was drawn of the surface stays where scene and view still show it.
+    UpdateReport update_layers(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
 
     // Everything below draws what update() was last given; arrays have row 0 at the top.
     std::vector<uint8_t> draw_image();
@@ -46,6 +49,10 @@ private:
     using RectangleFn = std::function<void(const Rectangle&)>;
 
     void upload(std::shared_ptr<const PreparedScene> scene);
+    void upload_layers(const PreparedScene& scene);
+    void set_view();
+    bool has_lens() const;
+    GBufferView look_through_lens();
     void choose_rectangles();
     void make_targets();
     void for_each_rectangle(const RectangleFn& body);
@@ -73,6 +80,7 @@ private:
     uint64_t triangles_ = 0;
 
     GBuffer gbuffer_;
+    LensMask lens_mask_;
     const void* drawn_in_gbuffer_ = nullptr;  // the rectangle it holds, when there is just one
     gl::Texture2D overlay_;
     gl::Framebuffer overlay_framebuffer_;

@@ -7,6 +7,7 @@
 #include "decalgl/core/error.h"
 #include "frame/pipeline.h"
 #include "frame/prepared_file.h"
+#include "frame/scene_changes.h"
 #include "frame/stats.h"
 
 namespace decalgl {
@@ -67,11 +68,19 @@ struct RendererState {
         scene = std::move(prepared);
     }
 
+    // What the camera was updated to is changed with it, so that the next picture shows the change.
+    void change_scene(const std::shared_ptr<const PreparedScene>& before,
+                      std::shared_ptr<const PreparedScene> after) {
+        if (updated_scene == before)
+            updated_scene = after;
+        set_scene(std::move(after));
+    }
+
     // Makes the pipeline draw a request, whatever it drew last.
     Pipeline& pipeline_for(const std::shared_ptr<const PreparedScene>& wanted,
                            const PictureRequest& wanted_request) {
         if (!pipeline->draws(wanted.get(), wanted_request))
-            pipeline->update(wanted, wanted_request);
+            pipeline->update_layers(wanted, wanted_request);
         return *pipeline;
     }
 };
@@ -126,6 +135,36 @@ void Renderer::save(const std::string& path) const {
 
 void Renderer::open(const std::string& path) {
     state_->set_scene(open_scene(path, state_->options.threads, state_->memory));
+}
+
+LayerLook Renderer::look(uint32_t layer) const {
+    const auto scene = state_->require_scene("look at");
+    require_layer(*scene, layer);
+    LayerLook look;
+    look.layer = layer;
+    return scene->passes.empty() ? look
+                                 : scene->passes[0].prepared->look(layer, scene->layers[layer].rows.size());
+}
+
+void Renderer::restyle(const std::vector<LayerLook>& looks) {
+    const auto before = state_->require_scene("restyle");
+    state_->change_scene(before, restyled_scene(*before, looks, state_->memory));
+}
+
+void Renderer::set_lens(const Lens& lens, const std::vector<LayerLook>& looks) {
+    const auto before = state_->require_scene("look at");
+    state_->change_scene(before,
+                         scene_with_lens(*before, std::make_shared<const Lens>(lens), looks, state_->memory));
+}
+
+void Renderer::move_lens(const Lens& lens) {
+    const auto before = state_->require_scene("look at");
+    state_->change_scene(before, scene_with_moved_lens(*before, std::make_shared<const Lens>(lens)));
+}
+
+void Renderer::remove_lens() {
+    const auto before = state_->require_scene("look at");
+    state_->change_scene(before, scene_with_lens(*before, nullptr, {}, state_->memory));
 }
 
 std::vector<PreparedLayer> Renderer::layers() const {
@@ -250,9 +289,11 @@ std::vector<PickedFeature> Frame::pick(int x, int y) const {
     const std::vector<double>& positions = world();
     std::vector<PickedFeature> picked;
     const PreparedScene& scene = *state_->scene;
+    const double map_x = positions[3 * pixel], map_y = positions[3 * pixel + 1];
+    const bool in_lens = scene.lens && scene.lens->contains(x + 0.5, y + 0.5, map_x, map_y);
     for (size_t pass = scene.passes.size(); pass-- > 0;) {
-        for (const FeatureReference& reference :
-             scene.passes[pass].prepared->query(positions[3 * pixel], positions[3 * pixel + 1]))
+        const Prepared& seen = in_lens ? *scene.passes[pass].in_lens : *scene.passes[pass].prepared;
+        for (const FeatureReference& reference : seen.query(map_x, map_y))
             picked.push_back({static_cast<int32_t>(reference.layer), scene.row_of(reference)});
     }
     return picked;

@@ -181,7 +181,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
             uint word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
             ++at;
             if (is_header(word)) {
-                if (group.covered != 0u) add_layer(samples, group.covered, color_of(group.slot));
+                if (group.covered != 0u && is_shown(group.slot)) add_layer(samples, group.covered, color_of(group.slot));
                 group = group_of(word, bias, local, foot);
                 ended = word == LIST_END || samples.open == 0u;
             } else {

@@ -33,6 +33,10 @@
 #define LEVEL_TEXELS 16
 #define FEWEST_TEXELS 3
 
+// decal_kinds[slot] & SCALE_MASK: a line's words are in units of 2^scale quanta. Only where strokes may become wider or
+// narrower; else the scale is that of their half width.
+#define SCALE_MASK 63u
+
 #define COUNT_BITS 6
 #define COUNT_ESCAPE 63u  // that many or more: to the texel whose last word is LIST_END
 #define EMPTY_LIST 0u     // of cells without one; the first texel is LIST_END alone

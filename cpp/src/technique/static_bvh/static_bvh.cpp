@@ -16,10 +16,26 @@ namespace {
                 "index 'bvh' is not kept on disk; prepare the scene with index 'grid'");
 }
 
+[[noreturn]] void refuse_changes() {
+    throw Error(
+        ErrorKind::unsupported,
+        "index 'bvh' keeps the looks that it was prepared with; prepare the scene with index 'grid' to "
+        "change them");
+}
+
 }  // namespace
 
 void bvh::PreparedBvh::save(ArchiveWriter&, const std::string&) const {
     refuse_files();
+}
+
+std::shared_ptr<const Prepared> bvh::PreparedBvh::restyled(Span<const LayerLook>,
+                                                           const MemoryAccount&) const {
+    refuse_changes();
+}
+
+LayerLook bvh::PreparedBvh::look(uint32_t, size_t) const {
+    refuse_changes();
 }
 
 std::unique_ptr<const Prepared> StaticBvh::open(const ArchiveReader&, const std::string&,
@@ -31,7 +47,8 @@ std::unique_ptr<const Prepared> StaticBvh::preprocess(const TechniqueInput& inpu
     return bvh::build_bvh(input, progress);
 }
 
-void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
+void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
+                       const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const bvh::PreparedBvh>(std::move(prepared));
     buffers_.clear();
     for (const bvh::DecalGroup& group : prepared_->groups) {

@@ -123,8 +123,9 @@ void BucketBuilder::add_polygon(uint32_t slot, Span<const Stretch> stretches, bo
 
 void BucketBuilder::add_line(uint32_t slot, Span<const Stretch> stretches) {
     lines_.begin(slot, features_.half_widths[slot]);
-    for (const Stretch& stretch : stretches)
-        lines_.mark_covered_cells(points_of(stretch));
+    if (features_.is_fixed(slot))
+        for (const Stretch& stretch : stretches)
+            lines_.mark_covered_cells(points_of(stretch));
     for (const Stretch& stretch : stretches)
         lines_.add_edges(points_of(stretch));
 }

@@ -94,7 +94,8 @@ private:
     std::vector<uint64_t> keys_;
 };
 
-// What is drawn, in draw order: slots name the features, half widths are in quanta and 0 for polygons.
+// What is drawn, in draw order: slots name the features; half widths are the widest that strokes may become, in quanta,
+// and 0 for polygons.
 struct OrderedFeatures {
     const TechniqueInput* input;
     const BucketGrid* grid;
@@ -103,6 +104,11 @@ struct OrderedFeatures {
 
     const Features& features(size_t slot) const {
         return input->layers[slots[slot].feature.layer - input->first_layer].features;
+    }
+    // Whether a line is as wide as it will ever be, so that it may be said to cover whole cells.
+    bool is_fixed(size_t slot) const {
+        const Layer& layer = input->layers[slots[slot].feature.layer - input->first_layer];
+        return DecalView{&layer, slots[slot]}.stroke().widest == 0.0;
     }
     // Of a feature's vertices, counted in its layer: the first, and one past the last.
     size_t first_vertex(size_t slot) const { return vertex_at(slot, 0); }

@@ -42,30 +42,48 @@ void require_addressable(const TechniqueInput& input, size_t slots) {
                                            " features in one scene; draw a smaller part of the map at once");
 }
 
-void collect_slots(const TechniqueInput& input, PreparedDecals& decals) {
-    std::vector<Decal> slots = decals_of(input.layers, input.first_layer);
+std::vector<LayerRules> rules_of(const TechniqueInput& input) {
+    std::vector<LayerRules> rules(input.first_layer, LayerRules{0.0, 0.0, 0.5, 0});
+    for (const Layer& layer : input.layers)
+        rules.push_back({layer.stroke.widest, layer.casing.widest,
+                         layer.outline_mode == OutlineMode::normal ? 0.5 : 1.0,
+                         layer.outline_order == OutlineOrder::feature ? uint64_t{1} : uint64_t{0}});
+    return rules;
+}
+
+void collect_slots(const TechniqueInput& input, PreparedDecals& decals,
+                   std::vector<float>& widest_half_widths) {
+    std::vector<Decal> slots = decals_of(input.layers, input.first_layer, Hidden::kept);
     std::reverse(slots.begin(), slots.end());
     require_addressable(input, slots.size());
     std::vector<DecalStyle> styles;
+    std::vector<uint32_t> kinds;
+    bool has_fixed_widths = true;
     for (const Decal& slot : slots) {
         const DecalView view{&input.layers[slot.feature.layer - input.first_layer], slot};
         const uint8_t* color = view.color();
         DecalStyle style{{color[0], color[1], color[2], color[3]}, 0.0F};
+        float widest = 0.0F;
         if (slot.is_stroke()) {
             style.half_width = static_cast<float>(view.half_width() / decals.grid.quantum);
-            decals.largest_scale = std::max(decals.largest_scale, line_scale(style.half_width));
-            decals.widest = std::max(decals.widest, style.half_width);
-            decals.narrowest =
-                decals.has_lines ? std::min(decals.narrowest, style.half_width) : style.half_width;
+            if (style.half_width <= 0.0F)
+                style.color[3] = 0;
+            widest = static_cast<float>(view.widest_half_width() / decals.grid.quantum);
+            has_fixed_widths &= view.stroke().widest == 0.0;
         }
+        widest_half_widths.push_back(widest);
+        kinds.push_back(static_cast<uint32_t>(line_scale(widest)));
+        decals.largest_scale = std::max(decals.largest_scale, line_scale(widest));
         styles.push_back(style);
-        decals.has_one_color &= style.color == styles.front().color;
         decals.segments += segments_of(view.layer->features, view.feature());
-        decals.has_translucency |= color[3] != 255;
         (slot.is_stroke() ? decals.has_lines : decals.has_polygons) = true;
     }
     decals.slots = std::move(slots);
     decals.styles = std::move(styles);
+    if (!has_fixed_widths)
+        decals.kinds = std::move(kinds);
+    decals.rules = rules_of(input);
+    decals.summarise_styles();
 }
 
 std::vector<BucketReferences> make_all_references(const OrderedFeatures& features,
@@ -168,10 +186,10 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
     }
     const uint64_t bytes = 16 * end.first_texel + 4 * end.first_cell +
                            4 * uint64_t{decals.grid.bucket_count()} + decals.styles.size_bytes() +
-                           decals.slots.size_bytes();
+                           decals.slots.size_bytes() + decals.kinds.size_bytes();
     if (end.first_texel > most_texels || end.first_cell > most_cells)
         refuse_size(bytes);
-    decals.charge.resize(bytes);
+    decals.charges.front()->resize(bytes);
     IndexArrays index;
     index.bucket_entries.resize(decals.grid.bucket_count());
     index.cells.resize(end.first_cell);
@@ -193,13 +211,10 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
 
 std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress) {
     auto decals = std::make_unique<PreparedDecals>();
-    decals->charge = MemoryCharge(input.memory, "static: prepared", 0);
+    decals->charges.push_back(std::make_shared<MemoryCharge>(input.memory, "static: prepared", uint64_t{0}));
     decals->grid = BucketGrid::over(input.bounds, input.positions, choose_resolution(input));
-    collect_slots(input, *decals);
     std::vector<float> half_widths;
-    half_widths.reserve(decals->styles.size());
-    for (const DecalStyle& style : decals->styles)
-        half_widths.push_back(style.half_width);
+    collect_slots(input, *decals, half_widths);
     const OrderedFeatures features{&input, &decals->grid, decals->slots, half_widths};
     std::vector<MemoryCharge> reference_charges, chunk_charges;
     std::vector<BucketReferences> references = make_all_references(features, reference_charges, progress);
@@ -213,7 +228,7 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
 
 PreparedCounts PreparedDecals::counts() const {
     const size_t bytes = bucket_entries.size_bytes() + cells.size_bytes() + words.size_bytes() +
-                         styles.size_bytes() + slots.size_bytes();
+                         styles.size_bytes() + slots.size_bytes() + kinds.size_bytes() + ranks.size_bytes();
     return {slots.size(), segments, pieces, bytes, std::ldexp(grid.quantum, largest_scale)};
 }
 

@@ -25,14 +25,10 @@ struct DecalRecord {
     int32_t rows;
     uint32_t longest_list;
     int32_t largest_scale;
-    float widest;
-    float narrowest;
     uint32_t has_polygons;
     uint32_t has_lines;
-    uint32_t has_one_color;
-    uint32_t has_translucency;
 };
-static_assert(sizeof(DecalRecord) == 120, "saved as it is");
+static_assert(sizeof(DecalRecord) == 104, "saved as it is");
 
 constexpr size_t block_items = 1 << 18;
 constexpr int64_t farthest_bucket = int64_t{1} << 31;
@@ -40,12 +36,10 @@ constexpr int largest_scale_there_is = 64;
 
 DecalRecord record_of(const PreparedDecals& decals) {
     const BucketGrid& grid = decals.grid;
-    return {grid.positions,       grid.bucket_size,       grid.quantum,
-            grid.first_bucket_x,  grid.first_bucket_y,    decals.segments,
-            decals.pieces,        grid.columns,           grid.rows,
-            decals.longest_list,  decals.largest_scale,   decals.widest,
-            decals.narrowest,     decals.has_polygons,    decals.has_lines,
-            decals.has_one_color, decals.has_translucency};
+    return {grid.positions,      grid.bucket_size,    grid.quantum,         grid.first_bucket_x,
+            grid.first_bucket_y, decals.segments,     decals.pieces,        grid.columns,
+            grid.rows,           decals.longest_list, decals.largest_scale, decals.has_polygons,
+            decals.has_lines};
 }
 
 void restore(const DecalRecord& record, PreparedDecals& decals) {
@@ -55,12 +49,8 @@ void restore(const DecalRecord& record, PreparedDecals& decals) {
     decals.pieces = record.pieces;
     decals.longest_list = record.longest_list;
     decals.largest_scale = record.largest_scale;
-    decals.widest = record.widest;
-    decals.narrowest = record.narrowest;
     decals.has_polygons = record.has_polygons != 0;
     decals.has_lines = record.has_lines != 0;
-    decals.has_one_color = record.has_one_color != 0;
-    decals.has_translucency = record.has_translucency != 0;
 }
 
 bool is_power_of_two(double value) {
@@ -111,6 +101,14 @@ bool are_lists(const PreparedDecals& decals) {
            all_blocks(decals.bucket_entries.size(), has_cells) && all_blocks(cells, has_texels);
 }
 
+// Arrays of slots are as long as they are many.
+bool are_of_slots(const PreparedDecals& decals) {
+    const size_t count = decals.slots.size();
+    const auto fits = [&](size_t size) { return size == 0 || size == count; };
+    return count > 0 && decals.styles.size() == count && fits(decals.kinds.size()) &&
+           fits(decals.ranks.size());
+}
+
 bool name_slots(const PreparedDecals& decals) {
     const size_t slots = decals.slots.size();
     return all_blocks(decals.words.size(), [&](size_t begin, size_t end) {
@@ -131,6 +129,9 @@ void PreparedDecals::save(ArchiveWriter& archive, const std::string& prefix) con
     archive.add(prefix + "cells", cells.span());
     archive.add(prefix + "words", words.span());
     archive.add(prefix + "styles", styles.span());
+    archive.add(prefix + "kinds", kinds.span());
+    archive.add(prefix + "ranks", ranks.span());
+    archive.add(prefix + "rules", rules.span());
     archive.add(prefix + "slots", slots.span());
 }
 
@@ -141,13 +142,16 @@ std::unique_ptr<PreparedDecals> open_decals(const ArchiveReader& archive, const 
     decals->cells = archive.array<uint32_t>(prefix + "cells");
     decals->words = archive.array<uint32_t>(prefix + "words");
     decals->styles = archive.array<DecalStyle>(prefix + "styles");
+    decals->kinds = archive.array<uint32_t>(prefix + "kinds");
     decals->slots = archive.array<Decal>(prefix + "slots");
+    decals->ranks = archive.array<uint32_t>(prefix + "ranks");
+    decals->rules = archive.array<LayerRules>(prefix + "rules");
     const bool has_scale = decals->largest_scale >= 0 && decals->largest_scale <= largest_scale_there_is;
     if (!has_scale || !is_grid(decals->grid, decals->bucket_entries.size()))
         archive.refuse("the grid of the static index makes no sense");
-    if (decals->slots.empty() || decals->styles.size() != decals->slots.size() || !are_lists(*decals) ||
-        !name_slots(*decals))
+    if (!are_of_slots(*decals) || !are_lists(*decals) || !name_slots(*decals))
         archive.refuse("the cells of the static index do not fit together");
+    decals->summarise_styles();
     return decals;
 }
 

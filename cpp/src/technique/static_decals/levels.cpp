@@ -76,7 +76,7 @@ private:
         slot_ = header & SLOT_MASK;
         line_ = (header & LINE) != 0;
         std::fill_n(covered_.begin(), samples_.count(), (header & COVERS) != 0 ? 1 : 0);
-        const int scale = line_ ? line_scale(decals_.styles[slot_].half_width) : 0;
+        const int scale = line_ ? decals_.scale_of(slot_) : 0;
         const float unit = std::ldexp(1.0F, -scale);
         radius_ = decals_.styles[slot_].half_width * unit;
         for (size_t i = 0; i < samples_.count(); ++i) {

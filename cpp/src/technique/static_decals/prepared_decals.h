@@ -19,6 +19,15 @@ struct DecalStyle {
 };
 static_assert(sizeof(DecalStyle) == 8, "read as one RG32UI texel");
 
+// What restyling a layer has to know of it. Without padding, since it goes into files.
+struct LayerRules {
+    double stroke_widest;  // metres; 0: widths are fixed
+    double casing_widest;
+    double half_width_per_width;   // 1 where an outline lies on one side of its border alone, else 0.5
+    uint64_t outlines_by_feature;  // whether each outline lies over its own fill, else over all
+};
+static_assert(sizeof(LayerRules) == 32, "saved as it is");
+
 class PreparedDecals : public Prepared {
 public:
     PreparedCounts counts() const override;
@@ -26,6 +35,19 @@ public:
     std::vector<FeatureReference> query(double x, double y) const override;
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
+    bool shows_anything() const override { return has_shown; }
+    LayerLook look(uint32_t layer, size_t features) const override;
+    std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
+                                             const MemoryAccount& memory) const override;
+
+    // Works out what styles have in common, from `widest` to `one_color`.
+    void summarise_styles();
+    // A line's words are in units of 2^scale quanta.
+    int scale_of(uint32_t slot) const {
+        return kinds.empty() ? line_scale(styles[slot].half_width)
+                             : static_cast<int>(kinds[slot] & SCALE_MASK);
+    }
+    uint32_t rank_of(uint32_t slot) const { return ranks.empty() ? slot : ranks[slot]; }
     // The words of a cell, to LIST_END or their end.
     Span<const uint32_t> list(uint32_t cell_entry) const;
 
@@ -35,7 +57,10 @@ public:
     SharedArray<uint32_t> cells;
     SharedArray<uint32_t> words;
     SharedArray<DecalStyle> styles;
-    SharedArray<Decal> slots;  // topmost first
+    SharedArray<uint32_t> kinds;  // scale, where lines may become wider or narrower than they are; else empty
+    SharedArray<Decal> slots;     // as prepared, topmost first
+    SharedArray<uint32_t> ranks;  // of each slot in draw order, topmost 0, where it is another; else empty
+    SharedArray<LayerRules> rules;  // by the layer's place in the scene
     uint64_t segments = 0;
     uint64_t pieces = 0;
     uint32_t longest_list = 0;  // words
@@ -44,9 +69,13 @@ public:
     float narrowest = 0.0F;
     bool has_polygons = false;
     bool has_lines = false;
-    bool has_one_color = true;
+    bool has_one_color = true;  // of what is shown
     bool has_translucency = false;
-    MemoryCharge charge;  // of the arrays, but for those in a mapped file
+    bool has_hidden = false;  // decals of alpha 0
+    bool has_shown = false;   // any others
+    std::array<uint8_t, 4> one_color{};
+    // Of the arrays, but for those in a mapped file; shared as those are.
+    std::vector<std::shared_ptr<MemoryCharge>> charges;
 };
 
 // Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).

@@ -77,7 +77,7 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
     double radius = 0.0;
     Point at{}, previous{};
     const auto end_group = [&] {
-        if (covered)
+        if (covered && styles[slot].color[3] != 0)
             found.push_back(slots[slot].feature);
         covered = false;
     };
@@ -89,7 +89,7 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
             slot = word & SLOT_MASK;
             is_line = (word & LINE) != 0;
             covered = (word & COVERS) != 0;
-            const int scale = is_line ? line_scale(styles[slot].half_width) : 0;
+            const int scale = is_line ? scale_of(slot) : 0;
             radius = std::ldexp(static_cast<double>(styles[slot].half_width), -scale);
             at = {std::ldexp(place.local_x, -scale) + left, std::ldexp(place.local_y, -scale) + left};
             continue;
