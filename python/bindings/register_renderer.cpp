@@ -221,6 +221,7 @@ void register_renderer(py::module_& module) {
         .def("open", &Renderer::open, py::arg("path"), py::call_guard<py::gil_scoped_release>())
         .def("look", &Renderer::look, py::arg("layer"))
         .def("restyle", &Renderer::restyle, py::arg("looks"), py::call_guard<py::gil_scoped_release>())
+        .def("edit", &Renderer::edit, py::arg("edit"), py::call_guard<py::gil_scoped_release>())
         .def("set_lens", &Renderer::set_lens, py::arg("lens"), py::arg("looks"),
              py::call_guard<py::gil_scoped_release>())
         .def("move_lens", &Renderer::move_lens, py::arg("lens"))

@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from . import _core
+from ._edits import edited
 from ._looks import LayerState, first_state
 from .errors import InputError, close_matches
 from .lens import Lens
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    import pyproj
+    from numpy.typing import NDArray
 
     from .frame import PreparedLayer
     from .scene import Layer
@@ -32,12 +36,14 @@ class LayerChanges:
         self._states: dict[int, LayerState] = {}
         self.lens: Lens | None = None
         self._any = False
+        self._crs: pyproj.CRS | None = None
 
     def __bool__(self) -> bool:
         return self._any
 
-    def begin(self, layers: tuple[AnyLayer, ...]) -> None:
-        """Forgets everything: these layers were just prepared."""
+    def begin(self, layers: tuple[AnyLayer, ...], crs: pyproj.CRS | None = None) -> None:
+        """Forgets everything: these layers were just prepared; crs is the scene's."""
+        self._crs = crs
         self._layers = layers
         self._states = {}
         self.lens = None
@@ -55,6 +61,27 @@ class LayerChanges:
         self._any = True
         if self.lens is not None and any(look.layer == index for look in looks):
             self._core.set_lens(_core_lens(self.lens), looks)
+
+    def edit(
+        self,
+        layer: AnyLayer | str | int,
+        add: Any,
+        remove: Any,
+        move: Mapping[int, Any] | None,
+        replacing: Mapping[int, Any] | None,
+        style: Mapping[str, Any],
+    ) -> NDArray[np.int64]:
+        """Renderer.edit."""
+        index = self._index_of(layer)
+        done = edited(self._state(index), self._crs, add, remove, move, replacing, style)
+        states = {**self._states, index: done.state}
+        looks = [] if self.lens is None else self._lens_looks(self.lens, states)
+        self._core.edit(done.core)
+        self._states = states
+        self._any = True
+        if self.lens is not None:
+            self._core.set_lens(_core_lens(self.lens), looks)
+        return done.rows
 
     def set_lens(self, lens: Lens | None) -> None:
         """Renderer.lens."""

@@ -82,6 +82,22 @@ class LayerLook:
     draw_order: NDArray[np.int64]
     def __init__(self) -> None: ...
 
+class LayerEdit:
+    fill: DecalLook
+    stroke: DecalLook
+    casing: DecalLook
+    def __init__(
+        self,
+        layer: int,
+        polygons: bool,
+        removed: NDArray[np.uint32],
+        replaced: NDArray[np.uint32],
+        coordinates: NDArray[np.float64],
+        part_offsets: NDArray[np.int64],
+        feature_offsets: NDArray[np.int64],
+        rows: NDArray[np.int64],
+    ) -> None: ...
+
 class Lens:
     def __init__(
         self,
@@ -166,6 +182,7 @@ class Renderer:
     def open(self, path: bytes) -> None: ...
     def look(self, layer: int) -> LayerLook: ...
     def restyle(self, looks: Sequence[LayerLook]) -> None: ...
+    def edit(self, edit: LayerEdit) -> None: ...
     def set_lens(self, lens: Lens, looks: Sequence[LayerLook]) -> None: ...
     def move_lens(self, lens: Lens) -> None: ...
     def remove_lens(self) -> None: ...

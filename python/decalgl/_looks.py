@@ -7,7 +7,7 @@ is known apart, so that it can come back.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,12 +17,13 @@ from ._colors import alpha_values, parse_color
 from ._filters import Columns, rows_meant
 from .coloring import resolve_colors
 from .errors import InputError, StyleError, close_matches
-from .scene import Layer, draw_order_of
+from .scene import Layer, draw_order_by
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ._sources import Attributes
+    from .features import FeatureTable
     from .frame import PreparedLayer
 
 COLOR_KEYWORDS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
@@ -45,6 +46,7 @@ class LayerState:
 
     decals: by "fill", "stroke" and "casing", as far as there are any.
     shown: bool (features). opacity: float64 (features). Both None for all of it.
+    removed: features that edits removed. geometry: of those that edits moved, replaced or added.
     """
 
     layer: Layer | PreparedLayer
@@ -56,6 +58,8 @@ class LayerState:
     shown: NDArray[np.bool_] | None = None
     opacity: NDArray[np.float64] | None = None
     draw_order: NDArray[np.int64] | None = None
+    removed: frozenset[int] = frozenset()
+    geometry: Mapping[int, FeatureTable] = field(default_factory=dict)
 
     @property
     def columns(self) -> Columns:
@@ -116,7 +120,7 @@ def first_state(layer: Layer | PreparedLayer, look: _core.LayerLook) -> LayerSta
 def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
     name = state.layer.name
     given = {key: value for key, value in keywords.items() if value is not None}
-    _require_known(given, KEYWORDS, name)
+    require_known(given, KEYWORDS, name)
     where = None
     if "where" in given:
         where = rows_meant(given["where"], state.row_count, state.columns, name, "where")[state.rows]
@@ -139,11 +143,12 @@ def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
     return result
 
 
-def _require_known(given: Mapping[str, Any], known: tuple[str, ...], name: str) -> None:
+def require_known(given: Mapping[str, Any], known: tuple[str, ...], name: str) -> None:
+    """Raises StyleError, with close matches, for a keyword that is not known."""
     for key in given:
         if key not in known:
             raise StyleError(
-                f"Layer {name!r}: there is no keyword {key!r} to restyle.{close_matches(key, known)} Known are"
+                f"Layer {name!r}: there is no keyword {key!r} here.{close_matches(key, known)} Known are"
                 f" {', '.join(known)}."
             )
 
@@ -162,7 +167,7 @@ def _decal_keywords(state: LayerState, main: str, given: Mapping[str, Any]) -> d
         if not isinstance(given[keyword], Mapping):
             raise StyleError(f"{keyword}= must be a dict of keywords such as {{'color': 'red'}}.")
         wanted[role] = {key: value for key, value in given[keyword].items() if value is not None}
-        _require_known(wanted[role], DECAL_KEYWORDS, state.layer.name)
+        require_known(wanted[role], DECAL_KEYWORDS, state.layer.name)
     return wanted
 
 
@@ -266,7 +271,11 @@ def _merged(before: Any, wanted: Any, default: Any, where: NDArray[np.bool_] | N
 
 def _draw_order(state: LayerState, order: Any) -> NDArray[np.int64]:
     if isinstance(state.layer, Layer) and state.attributes is not None:
-        return draw_order_of(order, state.layer.features, state.attributes)
+        if isinstance(order, str) and order == "feature":
+            return np.arange(len(state.rows), dtype=np.int64)
+        if isinstance(order, str) and order == "size":
+            return np.argsort(_sizes(state, state.layer), kind="stable").astype(np.int64)
+        return draw_order_by(order, state.rows, state.attributes)
     if isinstance(order, str):
         if order == "feature":
             return np.arange(len(state.rows), dtype=np.int64)
@@ -278,3 +287,11 @@ def _draw_order(state: LayerState, order: Any) -> NDArray[np.int64]:
     if keys.shape != (state.row_count,):
         raise InputError(f"order= has shape {keys.shape}, but the layer has {state.row_count} rows.")
     return np.argsort(keys[state.rows], kind="stable").astype(np.int64)
+
+
+def _sizes(state: LayerState, layer: Layer) -> NDArray[np.float64]:
+    sizes = np.zeros(len(state.rows))
+    sizes[: len(layer.features)] = layer.features.sizes()
+    for feature, table in state.geometry.items():
+        sizes[feature] = table.sizes()[0]
+    return sizes

@@ -27,6 +27,8 @@ from .indexes import BvhIndex, resolve_index
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from numpy.typing import NDArray
+
     from .camera import Camera
     from .lens import Lens
     from .scene import Layer, Scene
@@ -147,7 +149,7 @@ class Renderer:
         self._prepared = state
         self._cache = cache_name
         self._prepared_layers = scene.layers
-        self._changes.begin(scene.layers)
+        self._changes.begin(scene.layers, scene.terrain.crs)
 
     def save(self, path: PathLike) -> None:
         """Writes what is prepared to a file that `open` takes; a file that is there is replaced as a whole.
@@ -196,6 +198,33 @@ class Renderer:
         index="bvh".
         """
         self._changes.restyle(layer, keywords)
+
+    def edit(
+        self,
+        layer: AnyLayer | str | int,
+        *,
+        add: Any = None,
+        remove: Any = None,
+        move: Mapping[int, tuple[float, float]] | None = None,
+        replace: Mapping[int, Any] | None = None,
+        **style: Any,
+    ) -> NDArray[np.int64]:
+        """Adds, removes, moves and replaces features of a layer; only what lies around them is prepared anew.
+
+        add: features, as `Scene.add_polygons` and `add_lines` read them. They come on top of the layer, and
+            their rows follow those of the layer's data.
+        remove: rows. move: {row: (dx, dy)} in metres. replace: {row: geometry}, in the scene's CRS unless crs=
+            says another.
+        style: color, column, cmap ... alpha and width of what is added, and crs. Without, it looks as the
+            layer does, where that is of one colour and width. Outlines and casings are those of the layer.
+
+        Returns the rows of what was added, int64, those without geometry left out. The next `render` shows the
+        edit. As with `restyle`, the scene is not changed, and frames of before stay right.
+
+        Raises InputError for rows without a feature, what `Scene.add_lines` raises, and UnsupportedError for
+        index="bvh" and for what was opened from a file, which has no vertices; all leave everything as it was.
+        """
+        return self._changes.edit(layer, add, remove, move, replace, style)
 
     @property
     def lens(self) -> Lens | None:

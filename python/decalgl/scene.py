@@ -339,7 +339,7 @@ class Scene:
             if repr(name) in str(error):
                 raise
             raise StyleError(f"Layer {name!r}: {error}") from error
-        draw_order = draw_order_of(order, table, attributes)
+        draw_order = _draw_order(order, table, attributes)
         layer = Layer(
             name,
             len(self._layers),
@@ -443,13 +443,16 @@ def _require_line_style(layer_name: str, width_units: str, corner: str, cap: str
             )
 
 
-def draw_order_of(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
-    """Features from bottom to top: "feature", "size", a column or numbers. Raises ColumnError, InputError."""
+def _draw_order(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:
     if isinstance(order, str) and order == "feature":
         return np.arange(len(table), dtype=np.int64)
     if isinstance(order, str) and order == "size":
-        keys = table.sizes()
-    else:
-        keys = attributes.numbers(order, "order")[table.rows]
-        keys[np.isnan(keys)] = -np.inf
+        return np.argsort(table.sizes(), kind="stable").astype(np.int64)
+    return draw_order_by(order, table.rows, attributes)
+
+
+def draw_order_by(order: Any, rows: NDArray[np.int64], attributes: Attributes) -> NDArray[np.int64]:
+    """Features from bottom to top by a column or numbers, one a row. Raises ColumnError, InputError."""
+    keys = attributes.numbers(order, "order")[rows]
+    keys[np.isnan(keys)] = -np.inf
     return np.argsort(keys, kind="stable").astype(np.int64)

@@ -142,13 +142,19 @@ LayerLook Renderer::look(uint32_t layer) const {
     require_layer(*scene, layer);
     LayerLook look;
     look.layer = layer;
-    return scene->passes.empty() ? look
-                                 : scene->passes[0].prepared->look(layer, scene->layers[layer].rows.size());
+    return scene->passes.empty()
+               ? look
+               : scene->passes[0].prepared->look_of(layer, scene->layers[layer].rows.size());
 }
 
 void Renderer::restyle(const std::vector<LayerLook>& looks) {
     const auto before = state_->require_scene("restyle");
     state_->change_scene(before, restyled_scene(*before, looks, state_->memory));
+}
+
+void Renderer::edit(const LayerEdit& edit) {
+    const auto before = state_->require_scene("edit");
+    state_->change_scene(before, edited_scene(*before, edit, state_->memory));
 }
 
 void Renderer::set_lens(const Lens& lens, const std::vector<LayerLook>& looks) {

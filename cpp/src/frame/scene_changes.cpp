@@ -29,6 +29,22 @@ std::shared_ptr<const Prepared> restyled(const PreparedScene& scene, const Prepa
     }
 }
 
+// The look of added features at the end of what a lens shows, where that is one a feature.
+void append(const DecalLook& added, size_t count, size_t features, DecalLook& look) {
+    if (look.colors.size() == 4 * features && !added.colors.empty())
+        for (size_t i = 0; i < count; ++i)
+            look.colors.insert(look.colors.end(), added.color(i), added.color(i) + 4);
+    if (look.widths.size() == features && !added.widths.empty())
+        for (size_t i = 0; i < count; ++i)
+            look.widths.push_back(added.width(i));
+}
+
+void append(const LayerEdit& edit, size_t features, LayerLook& look) {
+    append(edit.fill, edit.added_count(), features, look.fill);
+    append(edit.stroke, edit.added_count(), features, look.stroke);
+    append(edit.casing, edit.added_count(), features, look.casing);
+}
+
 void look_through_lens(PreparedScene& scene, const MemoryAccount& memory) {
     for (PreparedPass& pass : scene.passes)
         pass.in_lens = scene.lens ? restyled(scene, *pass.prepared, scene.lens_looks, memory) : nullptr;
@@ -49,6 +65,29 @@ std::shared_ptr<const PreparedScene> restyled_scene(const PreparedScene& scene, 
     changed->fingerprint = SceneFingerprint(Digest{});
     for (PreparedPass& pass : changed->passes)
         pass.prepared = restyled(scene, *pass.prepared, looks, memory);
+    look_through_lens(*changed, memory);
+    return changed;
+}
+
+std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, const LayerEdit& edit,
+                                                  const MemoryAccount& memory) {
+    require_layer(scene, edit.layer);
+    const PreparedLayer& layer = scene.layers[edit.layer];
+    validate(edit, layer.kind, layer.rows.size(), layer.name);
+    if (scene.passes.empty())
+        throw Error(ErrorKind::unsupported,
+                    "a scene without features has no index to edit; prepare it anew with the first of them");
+    auto changed = std::make_shared<PreparedScene>(scene);
+    changed->fingerprint = SceneFingerprint(Digest{});
+    for (PreparedPass& pass : changed->passes)
+        pass.prepared = pass.prepared->edited(edit, memory);
+    std::vector<int64_t> rows(layer.rows.begin(), layer.rows.end());
+    const Span<const int64_t> added = edit.geometry.rows.subspan(edit.replaced.size(), edit.added_count());
+    rows.insert(rows.end(), added.begin(), added.end());
+    changed->layers[edit.layer].rows = std::move(rows);
+    for (LayerLook& look : changed->lens_looks)
+        if (look.layer == edit.layer)
+            append(edit, layer.rows.size(), look);
     look_through_lens(*changed, memory);
     return changed;
 }

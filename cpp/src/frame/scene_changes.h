@@ -16,6 +16,11 @@ void require_layer(const PreparedScene& scene, uint32_t layer);
 std::shared_ptr<const PreparedScene> restyled_scene(const PreparedScene& scene, Span<const LayerLook> looks,
                                                     const MemoryAccount& memory);
 
+// With features of a layer added, removed or replaced. What is added is seen inside the lens as outside. Throws what
+// Prepared::edited does.
+std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, const LayerEdit& edit,
+                                                  const MemoryAccount& memory);
+
 // With a lens that shows these looks, or without one where it is null.
 std::shared_ptr<const PreparedScene> scene_with_lens(const PreparedScene& scene,
                                                      std::shared_ptr<const Lens> lens,

@@ -15,7 +15,7 @@
 #include "decalgl/frame/picture_request.h"
 #include "decalgl/frame/prepared_layer.h"
 #include "decalgl/frame/scene.h"
-#include "decalgl/vector/layer_look.h"
+#include "decalgl/vector/layer_edit.h"
 
 namespace decalgl {
 
@@ -61,6 +61,9 @@ public:
     // for an index that cannot.
     LayerLook look(uint32_t layer) const;
     void restyle(const std::vector<LayerLook>& looks);
+    // Features of a layer added, removed or given another geometry, with an update of what lies around them alone.
+    // Throws Error(unsupported) where what is prepared was opened from a file.
+    void edit(const LayerEdit& edit);
     // Other looks inside a lens; what they leave open is as outside.
     void set_lens(const Lens& lens, const std::vector<LayerLook>& looks);
     // Nothing is made or uploaded but the lens itself.

@@ -23,6 +23,7 @@
 #include "decalgl/core/progress.h"
 #include "decalgl/vector/decal.h"
 #include "decalgl/vector/layer.h"
+#include "decalgl/vector/layer_edit.h"
 #include "decalgl/vector/layer_look.h"
 
 namespace decalgl::gl {
@@ -83,11 +84,16 @@ public:
     // Whether anything is to be drawn: not where all features are fully transparent.
     virtual bool shows_anything() const = 0;
     // How a layer of so many features looks: all its colours and widths, of features without a decal 0.
-    virtual LayerLook look(uint32_t layer, size_t features) const = 0;
+    virtual LayerLook look_of(uint32_t layer, size_t features) const = 0;
     // The same features with other looks: a new index that shares whatever stays. Throws Error(style) for what
     // needs preparing anew, Error(unsupported) where the technique cannot.
     virtual std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                                      const MemoryAccount& memory) const = 0;
+    // With features added, removed or replaced: a new index that shares whatever lies elsewhere. Throws
+    // Error(unsupported) where the technique cannot or the index was opened from a file, Error(input),
+    // Error(style), Error(memory).
+    virtual std::shared_ptr<const Prepared> edited(const LayerEdit& edit,
+                                                   const MemoryAccount& memory) const = 0;
 };
 
 enum class Antialias { none, coverage };

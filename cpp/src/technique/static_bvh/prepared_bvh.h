@@ -95,7 +95,8 @@ public:
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
     bool shows_anything() const override { return true; }
     // Throws Error(unsupported) too.
-    LayerLook look(uint32_t layer, size_t features) const override;
+    LayerLook look_of(uint32_t layer, size_t features) const override;
+    std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
     std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                              const MemoryAccount& memory) const override;
 

@@ -19,8 +19,7 @@ namespace {
 [[noreturn]] void refuse_changes() {
     throw Error(
         ErrorKind::unsupported,
-        "index 'bvh' keeps the looks that it was prepared with; prepare the scene with index 'grid' to "
-        "change them");
+        "index 'bvh' stays as it was prepared; prepare the scene with index 'grid' to restyle or edit it");
 }
 
 }  // namespace
@@ -34,7 +33,11 @@ std::shared_ptr<const Prepared> bvh::PreparedBvh::restyled(Span<const LayerLook>
     refuse_changes();
 }
 
-LayerLook bvh::PreparedBvh::look(uint32_t, size_t) const {
+LayerLook bvh::PreparedBvh::look_of(uint32_t, size_t) const {
+    refuse_changes();
+}
+
+std::shared_ptr<const Prepared> bvh::PreparedBvh::edited(const LayerEdit&, const MemoryAccount&) const {
     refuse_changes();
 }
 

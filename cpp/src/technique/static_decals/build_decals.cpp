@@ -8,10 +8,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core/growing_array.h"
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 #include "technique/static_decals/bucket_builder.h"
+#include "technique/static_decals/layer_sources.h"
+#include "technique/static_decals/local_build.h"
 #include "technique/static_decals/prepared_decals.h"
 #include "technique/static_decals/resolution.h"
 
@@ -173,6 +176,17 @@ void place_chunk(const CellChunk& chunk, const ChunkPlace& place, size_t first_b
               index.words.begin() + static_cast<std::ptrdiff_t>(4 * place.first_texel));
 }
 
+// Arrays are counted for as long as some index holds them.
+void charge_arrays(const MemoryAccount& memory, PreparedDecals& decals) {
+    const std::string name = "static: prepared";
+    decals.bucket_entries = charged(decals.bucket_entries, memory, name);
+    decals.cells = charged(decals.cells, memory, name);
+    decals.words = charged(decals.words, memory, name);
+    decals.styles = charged(decals.styles, memory, name);
+    decals.kinds = charged(decals.kinds, memory, name);
+    decals.slots = charged(decals.slots, memory, name);
+}
+
 void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& charges,
                  const TechniqueInput& input, PreparedDecals& decals) {
     std::vector<ChunkPlace> places;
@@ -189,7 +203,7 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
                            decals.slots.size_bytes() + decals.kinds.size_bytes();
     if (end.first_texel > most_texels || end.first_cell > most_cells)
         refuse_size(bytes);
-    decals.charges.front()->resize(bytes);
+    MemoryCharge charge(input.memory, "static: prepared", bytes);
     IndexArrays index;
     index.bucket_entries.resize(decals.grid.bucket_count());
     index.cells.resize(end.first_cell);
@@ -205,13 +219,14 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
     decals.bucket_entries = std::move(index.bucket_entries);
     decals.cells = std::move(index.cells);
     decals.words = std::move(index.words);
+    charge = MemoryCharge();
+    charge_arrays(input.memory, decals);
 }
 
 }  // namespace
 
 std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress) {
     auto decals = std::make_unique<PreparedDecals>();
-    decals->charges.push_back(std::make_shared<MemoryCharge>(input.memory, "static: prepared", uint64_t{0}));
     decals->grid = BucketGrid::over(input.bounds, input.positions, choose_resolution(input));
     std::vector<float> half_widths;
     collect_slots(input, *decals, half_widths);
@@ -222,8 +237,42 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
     references.clear();
     reference_charges.clear();
     join_chunks(chunks, chunk_charges, input, *decals);
+    decals->sources = std::make_shared<const LayerSources>(input);
+    decals->look = std::make_shared<const LookToken>();
     progress.report(1.0);
     return decals;
+}
+
+std::vector<uint32_t> touched_buckets(const TechniqueInput& input, const BucketGrid& grid) {
+    PreparedDecals decals;
+    decals.grid = grid;
+    std::vector<float> half_widths;
+    collect_slots(input, decals, half_widths);
+    const OrderedFeatures features{&input, &decals.grid, decals.slots, half_widths};
+    std::vector<MemoryCharge> charges;
+    Progress progress;
+    std::vector<uint32_t> buckets;
+    for (BucketReferences& run : make_all_references(features, charges, progress))
+        for (const BucketReference& reference : run.references())
+            buckets.push_back(reference.bucket);
+    std::sort(buckets.begin(), buckets.end());
+    buckets.erase(std::unique(buckets.begin(), buckets.end()), buckets.end());
+    return buckets;
+}
+
+LocalBuild build_buckets(const TechniqueInput& input, const BucketGrid& grid, Span<const uint32_t> buckets) {
+    LocalBuild build;
+    build.decals.grid = grid;
+    std::vector<float> half_widths;
+    collect_slots(input, build.decals, half_widths);
+    const OrderedFeatures features{&input, &build.decals.grid, build.decals.slots, half_widths};
+    std::vector<MemoryCharge> charges;
+    Progress progress;
+    const std::vector<BucketReferences> references = make_all_references(features, charges, progress);
+    BucketBuilder builder(features);
+    for (const uint32_t bucket : buckets)
+        builder.build(bucket, references, build.chunk);
+    return build;
 }
 
 PreparedCounts PreparedDecals::counts() const {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/growing_array.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 
@@ -33,48 +34,30 @@ Place place_of(const Decal& decal, uint32_t slot, int64_t feature_place, bool by
     return by_feature ? Place{feature_place, role, clips, slot} : Place{role, feature_place, clips, slot};
 }
 
-// A list's groups on their way into another order.
-class ListSorter {
-public:
-    explicit ListSorter(const PreparedDecals& decals) : decals_(decals) {}
-
-    // `words` is a whole list; what follows its end stays.
-    void sort(uint32_t* words, size_t count) {
-        groups_.clear();
-        size_t end = 0;
-        for (; end < count && words[end] != LIST_END; ++end) {
-            if ((words[end] & HEADER) == 0)
-                continue;
-            if (!groups_.empty())
-                groups_.back().end = end;
-            groups_.push_back({decals_.ranks[words[end] & SLOT_MASK], end, end});
-        }
-        if (groups_.empty())
-            return;
-        groups_.back().end = end;
-        const auto is_above = [](const Group& a, const Group& b) { return a.rank < b.rank; };
-        if (std::is_sorted(groups_.begin(), groups_.end(), is_above))
-            return;
-        std::stable_sort(groups_.begin(), groups_.end(), is_above);
-        sorted_.clear();
-        for (const Group& group : groups_)
-            sorted_.insert(sorted_.end(), words + group.begin, words + group.end);
-        std::copy(sorted_.begin(), sorted_.end(), words);
-    }
-
-private:
-    struct Group {
-        uint32_t rank;
-        size_t begin;
-        size_t end;
-    };
-
-    const PreparedDecals& decals_;
-    std::vector<Group> groups_;
-    std::vector<uint32_t> sorted_;
-};
-
 }  // namespace
+
+void ListSorter::sort(uint32_t* words, size_t count) {
+    groups_.clear();
+    size_t end = 0;
+    for (; end < count && words[end] != LIST_END; ++end) {
+        if ((words[end] & HEADER) == 0)
+            continue;
+        if (!groups_.empty())
+            groups_.back().end = end;
+        groups_.push_back({decals_.rank_of(words[end] & SLOT_MASK), end, end});
+    }
+    if (groups_.empty())
+        return;
+    groups_.back().end = end;
+    const auto is_above = [](const Group& a, const Group& b) { return a.rank < b.rank; };
+    if (std::is_sorted(groups_.begin(), groups_.end(), is_above))
+        return;
+    std::stable_sort(groups_.begin(), groups_.end(), is_above);
+    sorted_.clear();
+    for (const Group& group : groups_)
+        sorted_.insert(sorted_.end(), words + group.begin, words + group.end);
+    std::copy(sorted_.begin(), sorted_.end(), words);
+}
 
 void reorder(const LayerLook& look, PreparedDecals& decals) {
     std::vector<int64_t> place_of_feature(look.draw_order.size());
@@ -102,8 +85,6 @@ void reorder(const LayerLook& look, PreparedDecals& decals) {
 
 void sort_lists(PreparedDecals& decals, const MemoryAccount& memory) {
     const SharedArray<uint32_t> before = decals.words;
-    decals.charges.push_back(std::make_shared<MemoryCharge>(memory, "static: prepared",
-                                                            before.size_bytes() + decals.ranks.size_bytes()));
     LargeArray<uint32_t> words;
     words.resize(before.size());
     parallel_for(words.size(), block_cells * 64, 0, [&](size_t begin, size_t end) {
@@ -119,7 +100,8 @@ void sort_lists(PreparedDecals& decals, const MemoryAccount& memory) {
             sorter.sort(words.data() + (list.data() - before.data()), list.size());
         }
     });
-    decals.words = std::move(words);
+    decals.words = charged(SharedArray<uint32_t>(std::move(words)), memory, "static: prepared");
+    decals.growing_words = {};
 }
 
 }  // namespace decalgl

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/growing_array.h"
 #include "decalgl/core/shared_array.h"
 #include "decalgl/technique/technique.h"
 #include "technique/static_decals/bucket_grid.h"
@@ -28,6 +29,10 @@ struct LayerRules {
 };
 static_assert(sizeof(LayerRules) == 32, "saved as it is");
 
+class LayerSources;
+
+struct LookToken {};
+
 class PreparedDecals : public Prepared {
 public:
     PreparedCounts counts() const override;
@@ -36,9 +41,11 @@ public:
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
     bool shows_anything() const override { return has_shown; }
-    LayerLook look(uint32_t layer, size_t features) const override;
+    LayerLook look_of(uint32_t layer, size_t features) const override;
     std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                              const MemoryAccount& memory) const override;
+
+    std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
 
     // Works out what styles have in common, from `widest` to `one_color`.
     void summarise_styles();
@@ -74,8 +81,13 @@ public:
     bool has_hidden = false;  // decals of alpha 0
     bool has_shown = false;   // any others
     std::array<uint8_t, 4> one_color{};
-    // Of the arrays, but for those in a mapped file; shared as those are.
-    std::vector<std::shared_ptr<MemoryCharge>> charges;
+    // What edits need: null, and so refused, for an index that was opened from a file.
+    std::shared_ptr<const LayerSources> sources;
+    GrowingArray<uint32_t> growing_cells;  // cells and words, once edits have added to them
+    GrowingArray<uint32_t> growing_words;
+    uint64_t unused_words = 0;  // of lists that edits have replaced
+    // Where two indexes share it, buckets with the same entry look the same in both.
+    std::shared_ptr<const LookToken> look;
 };
 
 // Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/growing_array.h"
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
@@ -118,7 +119,7 @@ void PreparedDecals::summarise_styles() {
     one_color = all.one_color;
 }
 
-LayerLook PreparedDecals::look(uint32_t layer, size_t features) const {
+LayerLook PreparedDecals::look_of(uint32_t layer, size_t features) const {
     LayerLook result;
     result.layer = layer;
     if (layer >= rules.size())
@@ -149,8 +150,6 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
         look_of[look.layer] = &look;
     }
     auto result = std::make_shared<PreparedDecals>(*this);
-    result->charges.push_back(
-        std::make_shared<MemoryCharge>(memory, "static: prepared", styles.size_bytes()));
     LargeArray<DecalStyle> changed;
     changed.resize(styles.size());
     parallel_for(styles.size(), block_slots, 0, [&](size_t begin, size_t end) {
@@ -164,7 +163,8 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
                       rules[slot.feature.layer].half_width_per_width / grid.quantum, changed[i]);
         }
     });
-    result->styles = std::move(changed);
+    result->styles = charged(SharedArray<DecalStyle>(std::move(changed)), memory, "static: prepared");
+    result->look = std::make_shared<const LookToken>();
     result->summarise_styles();
     for (const LayerLook& look : looks)
         if (!look.draw_order.empty() && look.layer < rules.size())

@@ -72,18 +72,36 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
             buffer = gl::TextureBuffer::from(memory_, name, format, ((*next).*array).span());
     };
     refresh("static: buckets", GL_R32UI, &PreparedDecals::bucket_entries, buckets_);
-    refresh("static: cells", GL_R32UI, &PreparedDecals::cells, cells_);
-    refresh("static: words", GL_RGBA32UI, &PreparedDecals::words, texels_);
+    cells_.upload(next->cells, next->growing_cells, GL_R32UI, "static: cells", memory_);
+    texels_.upload(next->words, next->growing_words, GL_RGBA32UI, "static: words", memory_);
     refresh("static: styles", GL_R32UI, &PreparedDecals::kinds, kinds_);
     upload_styles(next.get(), next_lens.get());
-    if (prepared_ != next)
-        levels_ = gl::Texture2D();
-    if (lens_ != next_lens)
-        lens_levels_ = gl::Texture2D();
+    refresh_levels(prepared_.get(), next.get(), levels_);
+    refresh_levels(lens_.get(), next_lens.get(), lens_levels_);
     if (!no_vertices_)
         no_vertices_ = gl::VertexArray::create();
     prepared_ = std::move(next);
     lens_ = std::move(next_lens);
+}
+
+// Levels of another look are made anew when they are needed; after an edit, only the buckets that it touched.
+void StaticDecals::refresh_levels(const PreparedDecals* before, const PreparedDecals* after,
+                                  gl::Texture2D& levels) {
+    if (!levels || before == after)
+        return;
+    if (before == nullptr || after == nullptr || before->look != after->look) {
+        levels = gl::Texture2D();
+        return;
+    }
+    const auto columns = static_cast<uint32_t>(after->grid.columns);
+    for (uint32_t bucket = 0; bucket < after->bucket_entries.size(); ++bucket) {
+        if (before->bucket_entries[bucket] == after->bucket_entries[bucket])
+            continue;
+        levels.update(0, static_cast<int>(bucket % columns) * LEVEL_TEXELS,
+                      static_cast<int>(bucket / columns) * LEVEL_TEXELS, LEVEL_TEXELS, LEVEL_TEXELS,
+                      draw_level_of_bucket(*after, bucket).data());
+    }
+    glGenerateTextureMipmap(levels.id());
 }
 
 // Into the buffer that is there, where it is as large as needed: a restyle allocates nothing.
@@ -116,9 +134,8 @@ UpdateReport StaticDecals::update(const View& view) {
         lens_levels_ = make_levels(*lens_, memory_);
     UpdateReport report;
     report.pieces = prepared_->pieces;
-    report.bytes = buckets_.buffer().bytes() + cells_.buffer().bytes() + texels_.buffer().bytes() +
-                   styles_.buffer().bytes() + kinds_.buffer().bytes() + levels_.bytes() +
-                   lens_levels_.bytes();
+    report.bytes = buckets_.buffer().bytes() + cells_.bytes() + texels_.bytes() + styles_.buffer().bytes() +
+                   kinds_.buffer().bytes() + levels_.bytes() + lens_levels_.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }

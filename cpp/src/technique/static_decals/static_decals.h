@@ -6,6 +6,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "technique/static_decals/growing_buffer.h"
 #include "technique/static_decals/prepared_decals.h"
 
 namespace decalgl {
@@ -31,6 +32,8 @@ private:
     bool any_look(HoldsFor holds_for) const {
         return holds_for(*prepared_) || (lens_ && holds_for(*lens_));
     }
+    static void refresh_levels(const PreparedDecals* before, const PreparedDecals* after,
+                               gl::Texture2D& levels);
     void add_style_flags(gl::Flags& flags) const;
     void draw_full_screen(gl::Flags flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
 
@@ -38,8 +41,8 @@ private:
     std::shared_ptr<const PreparedDecals> lens_;  // null without one
     MemoryAccount memory_;
     gl::TextureBuffer buckets_;
-    gl::TextureBuffer cells_;
-    gl::TextureBuffer texels_;
+    GrowingBuffer cells_;
+    GrowingBuffer texels_;
     gl::TextureBuffer styles_;  // those inside the lens follow the others
     gl::TextureBuffer kinds_;
     gl::Texture2D levels_;  // made by the first view that needs them
