@@ -51,15 +51,16 @@ def edited(
     given = {key: value for key, value in style.items() if value is not None}
     require_known(given, ADD_KEYWORDS, name)
     removed = _features_of(state, [] if remove is None else remove, "remove")
+    shifts, geometries = _checked_mapping(move, "move"), _checked_mapping(replacing, "replace")
     replaced: dict[int, FeatureTable] = {}
-    for row, shift in _checked_mapping(move, "move").items():
-        feature = int(_features_of(state, [row], "move")[0])
+    for feature, shift in zip(_features_of(state, list(shifts), "move").tolist(), shifts.values(), strict=True):
         replaced[feature] = _moved(state, feature, shift)
-    for row, geometry in _checked_mapping(replacing, "replace").items():
-        feature = int(_features_of(state, [row], "replace")[0])
+    places = _features_of(state, list(geometries), "replace").tolist()
+    for feature, given_geometry in zip(places, geometries.values(), strict=True):
         if feature in replaced:
+            row = int(state.rows[feature])
             raise InputError(f"Layer {name!r}: row {row} is moved and replaced. Give one of the two.")
-        replaced[feature] = _geometry_of(state, geometry, terrain_crs, given.get("crs"))
+        replaced[feature] = _geometry_of(state, given_geometry, terrain_crs, given.get("crs"))
     both = set(removed.tolist()) & set(replaced)
     if both:
         row = int(state.rows[min(both)])
@@ -96,9 +97,8 @@ def _features_of(state: LayerState, rows: Any, keyword: str) -> NDArray[np.int64
     what = f"Layer {state.layer.name!r}: {keyword}="
     if wanted.dtype.kind not in "iu" or wanted.ndim != 1:
         raise InputError(f"{what} must name rows by whole numbers, not by {wanted.dtype}.")
-    order = np.argsort(state.rows, kind="stable")
-    places = np.searchsorted(state.rows, wanted, sorter=order)
-    found = order[np.minimum(places, len(order) - 1)]
+    # Rows rise, since features are read in the order of the data and added at the end.
+    found = np.minimum(np.searchsorted(state.rows, wanted), len(state.rows) - 1)
     missing = state.rows[found] != wanted
     missing |= np.isin(found, np.fromiter(state.removed, np.int64, len(state.removed)))
     if missing.any():
@@ -201,6 +201,8 @@ def _extended(
 ) -> LayerState:
     """The state with what was added at the end: on top of the layer, shown, and opaque."""
     count = len(table)
+    if attributes.count == 0:
+        return state
     decals = {}
     main = "fill" if "fill" in state.decals else "stroke"
     for role, decal in state.decals.items():

@@ -27,8 +27,8 @@ public:
 
     bool empty() const { return storage_ == nullptr; }
     SharedArray<T> values() const { return {Span<const T>(storage_->room.data(), size_), storage_}; }
-    // Values that fit without a copy.
-    std::size_t capacity() const { return storage_->room.size(); }
+    // Where the values lie that its first ones were copied from.
+    const T* origin() const { return storage_ ? storage_->origin : nullptr; }
 
     // `before` with `more` at its end, charged to the account as `name` where it is copied. `before` is values() of this
     // one, or this one is empty.
@@ -43,10 +43,11 @@ public:
             result.storage_ = storage_;
         } else {
             result.storage_ = std::make_shared<Storage>();
-            const std::size_t room = result.size_ + result.size_ / 2 + 4096;
+            const std::size_t room = result.size_ + result.size_ / 4 + 4096;
             result.storage_->charge = MemoryCharge(memory, name, room * sizeof(T));
             result.storage_->room.resize(room);
             result.storage_->used = result.size_;
+            result.storage_->origin = before.data();
             std::copy(before.begin(), before.end(), result.storage_->room.begin());
         }
         std::copy(more.begin(), more.end(), result.storage_->room.data() + before.size());
@@ -58,6 +59,7 @@ private:
         MemoryCharge charge;
         LargeArray<T> room;
         std::atomic<std::size_t> used{0};
+        const T* origin = nullptr;
     };
 
     std::shared_ptr<Storage> storage_;

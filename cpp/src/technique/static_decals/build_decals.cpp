@@ -54,6 +54,14 @@ std::vector<LayerRules> rules_of(const TechniqueInput& input) {
     return rules;
 }
 
+// By layers alone, so that a part of a scene has what the whole has.
+bool may_change_widths(const TechniqueInput& input) {
+    return std::any_of(input.layers.begin(), input.layers.end(), [](const Layer& layer) {
+        return (!layer.stroke.empty() && layer.stroke.widest > 0.0) ||
+               (!layer.casing.empty() && layer.casing.widest > 0.0);
+    });
+}
+
 void collect_slots(const TechniqueInput& input, PreparedDecals& decals,
                    std::vector<float>& widest_half_widths) {
     std::vector<Decal> slots = decals_of(input.layers, input.first_layer, Hidden::kept);
@@ -61,7 +69,6 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals,
     require_addressable(input, slots.size());
     std::vector<DecalStyle> styles;
     std::vector<uint32_t> kinds;
-    bool has_fixed_widths = true;
     for (const Decal& slot : slots) {
         const DecalView view{&input.layers[slot.feature.layer - input.first_layer], slot};
         const uint8_t* color = view.color();
@@ -72,7 +79,6 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals,
             if (style.half_width <= 0.0F)
                 style.color[3] = 0;
             widest = static_cast<float>(view.widest_half_width() / decals.grid.quantum);
-            has_fixed_widths &= view.stroke().widest == 0.0;
         }
         widest_half_widths.push_back(widest);
         kinds.push_back(static_cast<uint32_t>(line_scale(widest)));
@@ -83,7 +89,7 @@ void collect_slots(const TechniqueInput& input, PreparedDecals& decals,
     }
     decals.slots = std::move(slots);
     decals.styles = std::move(styles);
-    if (!has_fixed_widths)
+    if (may_change_widths(input))
         decals.kinds = std::move(kinds);
     decals.rules = rules_of(input);
     decals.summarise_styles();

@@ -1,7 +1,7 @@
 #include "technique/static_decals/draw_order.h"
 
 #include <algorithm>
-#include <tuple>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -14,25 +14,38 @@ namespace {
 
 constexpr size_t block_cells = 1 << 12;
 
-// Where a decal stands in its layer, from bottom to top: by its role and then by its feature, or the other way round. What
-// cuts a decal off stands right above it.
-struct Place {
-    int64_t first;
-    int64_t second;
-    int clips;
-    uint32_t slot;
+constexpr size_t roles = 4;  // at least as many as DecalRole has
+constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
+
+// The slots of one layer by feature and role.
+class LayerSlots {
+public:
+    LayerSlots(const PreparedDecals& decals, uint32_t layer, size_t features)
+        : slots_(roles * features, none) {
+        for (uint32_t slot = 0; slot < decals.slots.size(); ++slot) {
+            const Decal& decal = decals.slots[slot];
+            if (decal.feature.layer == layer && decal.feature.feature < features &&
+                static_cast<size_t>(decal.role) < roles)
+                slots_[roles * decal.feature.feature + static_cast<size_t>(decal.role)] = slot;
+        }
+    }
+
+    // Calls on_slot for the decals of a feature that lie below outlines and strokes, or for the others, upwards; what cuts a
+    // decal off comes right above it.
+    template <typename OnSlot>
+    void for_each(int64_t feature, bool lie_below, OnSlot on_slot) const {
+        const uint32_t* first = &slots_[roles * static_cast<size_t>(feature)];
+        for (size_t role = 0; role < roles; ++role) {
+            const bool is_below = role == static_cast<size_t>(DecalRole::fill) ||
+                                  role == static_cast<size_t>(DecalRole::casing);
+            if (is_below == lie_below && first[role] != none)
+                on_slot(first[role]);
+        }
+    }
+
+private:
+    std::vector<uint32_t> slots_;
 };
-
-bool operator<(const Place& a, const Place& b) {
-    return std::tie(a.first, a.second, a.clips) < std::tie(b.first, b.second, b.clips);
-}
-
-Place place_of(const Decal& decal, uint32_t slot, int64_t feature_place, bool by_feature) {
-    const bool lies_below = decal.role == DecalRole::fill || decal.role == DecalRole::casing;
-    const int64_t role = lies_below ? 0 : 1;
-    const int clips = lies_below || decal.role == DecalRole::stroke ? 0 : 1;
-    return by_feature ? Place{feature_place, role, clips, slot} : Place{role, feature_place, clips, slot};
-}
 
 }  // namespace
 
@@ -52,7 +65,7 @@ void ListSorter::sort(uint32_t* words, size_t count) {
     const auto is_above = [](const Group& a, const Group& b) { return a.rank < b.rank; };
     if (std::is_sorted(groups_.begin(), groups_.end(), is_above))
         return;
-    std::stable_sort(groups_.begin(), groups_.end(), is_above);
+    std::sort(groups_.begin(), groups_.end(), is_above);
     sorted_.clear();
     for (const Group& group : groups_)
         sorted_.insert(sorted_.end(), words + group.begin, words + group.end);
@@ -60,26 +73,29 @@ void ListSorter::sort(uint32_t* words, size_t count) {
 }
 
 void reorder(const LayerLook& look, PreparedDecals& decals) {
-    std::vector<int64_t> place_of_feature(look.draw_order.size());
-    for (size_t i = 0; i < look.draw_order.size(); ++i)
-        place_of_feature[static_cast<size_t>(look.draw_order[i])] = static_cast<int64_t>(i);
-    const bool by_feature = decals.rules[look.layer].outlines_by_feature != 0;
+    const LayerSlots layer(decals, look.layer, look.draw_order.size());
+    std::vector<uint32_t> upwards;
+    if (decals.rules[look.layer].outlines_by_feature != 0) {
+        for (const int64_t feature : look.draw_order)
+            for (const bool lie_below : {true, false})
+                layer.for_each(feature, lie_below, [&](uint32_t slot) { upwards.push_back(slot); });
+    } else {
+        for (const bool lie_below : {true, false})
+            for (const int64_t feature : look.draw_order)
+                layer.for_each(feature, lie_below, [&](uint32_t slot) { upwards.push_back(slot); });
+    }
     LargeArray<uint32_t> ranks;
     ranks.resize(decals.slots.size());
-    std::vector<Place> places;
-    std::vector<uint32_t> taken;
-    for (uint32_t slot = 0; slot < ranks.size(); ++slot) {
+    for (uint32_t slot = 0; slot < ranks.size(); ++slot)
         ranks[slot] = decals.rank_of(slot);
-        const Decal& decal = decals.slots[slot];
-        if (decal.feature.layer != look.layer)
-            continue;
-        places.push_back(place_of(decal, slot, place_of_feature[decal.feature.feature], by_feature));
-        taken.push_back(ranks[slot]);
-    }
-    std::sort(places.begin(), places.end());
-    std::sort(taken.begin(), taken.end());
-    for (size_t i = 0; i < places.size(); ++i)
-        ranks[places[i].slot] = taken[taken.size() - 1 - i];
+    // They share the ranks that they had.
+    std::vector<bool> is_theirs(ranks.size(), false);
+    for (const uint32_t slot : upwards)
+        is_theirs[ranks[slot]] = true;
+    size_t left = upwards.size();
+    for (uint32_t rank = 0; rank < is_theirs.size(); ++rank)
+        if (is_theirs[rank])
+            ranks[upwards[--left]] = rank;
     decals.ranks = std::move(ranks);
 }
 

@@ -11,16 +11,15 @@ namespace decalgl {
 
 class GrowingBuffer {
 public:
-    // Makes the buffer hold `values`, and room for what `growing` has room for; nothing where it is empty.
+    // Makes the buffer hold `values`, with room for what edits may add.
     void upload(const SharedArray<uint32_t>& values, const GrowingArray<uint32_t>& growing, GLenum format,
                 const std::string& name, const MemoryAccount& memory) {
-        const bool continues = buffer_ && held_.data() == values.data() &&
-                               sizeof(uint32_t) * values.size() <= buffer_.buffer().bytes();
-        if (!continues) {
+        const bool starts_alike = held_.data() == values.data() || held_.data() == growing.origin();
+        if (!buffer_ || !starts_alike || sizeof(uint32_t) * values.size() > buffer_.buffer().bytes()) {
             buffer_ = gl::TextureBuffer();
-            const size_t room = growing.empty() ? values.size() : growing.capacity() / 4 * 4;
-            buffer_ = gl::TextureBuffer::create(memory, name, format, sizeof(uint32_t) * room, nullptr,
-                                                GL_DYNAMIC_STORAGE_BIT);
+            const size_t room = values.size() + values.size() / 16 + 4096;
+            buffer_ = gl::TextureBuffer::create(memory, name, format, sizeof(uint32_t) * (room / 4 * 4),
+                                                nullptr, GL_DYNAMIC_STORAGE_BIT);
             uploaded_ = 0;
         }
         held_ = values;
