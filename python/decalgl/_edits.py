@@ -53,7 +53,9 @@ def edited(
     removed = _features_of(state, [] if remove is None else remove, "remove")
     shifts, geometries = _checked_mapping(move, "move"), _checked_mapping(replacing, "replace")
     replaced: dict[int, FeatureTable] = {}
-    for feature, shift in zip(_features_of(state, list(shifts), "move").tolist(), shifts.values(), strict=True):
+    for feature, shift in zip(
+        _features_of(state, list(shifts), "move").tolist(), shifts.values(), strict=True
+    ):
         replaced[feature] = _moved(state, feature, shift)
     places = _features_of(state, list(geometries), "replace").tolist()
     for feature, given_geometry in zip(places, geometries.values(), strict=True):
@@ -167,7 +169,12 @@ def _added(
             kind, np.zeros((0, 2)), np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(0, np.int64)
         )
         return nothing, Attributes(name, 0)
-    return read_features(add, kind, terrain_crs=terrain_crs, layer_name=name, crs=given.get("crs"))
+    crs = given.get("crs")
+    # Bare geometries come from picks and from frame.world more often than from elsewhere.
+    is_bare = (hasattr(add, "geom_type") or isinstance(add, (list, np.ndarray))) and not hasattr(add, "crs")
+    if crs is None and is_bare:
+        crs = terrain_crs
+    return read_features(add, kind, terrain_crs=terrain_crs, layer_name=name, crs=crs)
 
 
 def _core_edit(

@@ -211,8 +211,9 @@ class Renderer:
     ) -> NDArray[np.int64]:
         """Adds, removes, moves and replaces features of a layer; only what lies around them is prepared anew.
 
-        add: features, as `Scene.add_polygons` and `add_lines` read them. They come on top of the layer, and
-            their rows follow those of the layer's data.
+        add: features, as `Scene.add_polygons` and `add_lines` read them; geometries alone are in the scene's
+            CRS, as `frame.world` is, unless crs= says another. They come on top of the layer, and their rows
+            follow those of the layer's data.
         remove: rows. move: {row: (dx, dy)} in metres. replace: {row: geometry}, in the scene's CRS unless crs=
             says another.
         style: color, column, cmap ... alpha and width of what is added, and crs. Without, it looks as the

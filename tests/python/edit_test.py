@@ -166,6 +166,19 @@ def test_edits_restyles_and_lenses_add_up() -> None:
     assert_close(frame, expected.render())
 
 
+def test_geometries_alone_are_in_the_scenes_crs() -> None:
+    scene = dg.Scene(dg.Terrain.flat((0.0, 0.0, 100.0, 100.0), crs="EPSG:32604"))
+    scene.add_polygons([box(0, 0, 10, 10)], crs="EPSG:32604", color="tan")
+    renderer = dg.Renderer(SIZE, "none")
+    renderer.preprocess(scene)
+    renderer.update(MAP)
+    renderer.edit(0, add=[box(40, 40, 60, 60)], replace={0: box(0, 0, 20, 20)})
+    far = geopandas.GeoDataFrame(geometry=[box(60, 60, 70, 70)], crs="EPSG:32604").to_crs(4326)
+    renderer.edit(0, add=far)
+    ids = renderer.render().ids
+    assert [(ids == row).sum() for row in range(3)] == [400, 400, 100]
+
+
 BAD: dict[str, tuple[Callable[[dg.Renderer], Any], type[dg.DecalError], str]] = {
     "a row that is not there": (lambda r: r.edit("areas", remove=[40]), dg.InputError, "row 40"),
     "a row that was removed": (lambda r: r.edit("areas", move={2: (1, 1)}), dg.InputError, "row 2"),

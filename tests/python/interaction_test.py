@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -445,3 +446,72 @@ def test_colours_of_a_map_from_above() -> None:
     assert count_color(frame, BLUE) == 400
     assert pixel(frame, 20, 20) == BLUE
     assert frame.pick(20, 79)[0].row == 0
+
+
+def test_a_session_is_what_its_steps_are() -> None:
+    """Navigation, lens, pick, restyle and edit in a loop: at its end, the map is as if prepared so."""
+    renderer = prepared(scene_of({"column": "kind"}, {"color": "navy"}), "coverage")
+    lens = dg.Lens(circle=(0, 0, 15), styles={"areas": {"opacity": 1.0}}, hidden=("ways",))
+    marked: list[int] = []
+    added: list[int] = []
+    for step in range(12):
+        camera = dg.Camera.orbit((50.0, 50.0, 0.0), 140.0, azimuth=30.0 * step, elevation=50.0)
+        renderer.update(camera)
+        renderer.restyle("areas", opacity=1.0 - 0.05 * step)
+        renderer.lens = lens.moved(circle=(20.0 + 5 * step, 50.0, 15.0))
+        frame = renderer.render()
+        columns, lines = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
+        inside = np.hypot(columns - 20.0 - 5 * step, lines - 50.0) < 13.0
+        assert not (frame.layers[inside] == 1).any()
+        seen = np.argwhere(inside & (frame.layers == 0) & (frame.ids < 40))
+        if not len(seen):
+            continue
+        y, x = seen[len(seen) // 2].tolist()
+        hits = frame.pick(x, y)
+        assert hits[0].row == frame.ids[y, x]
+        assert all(hit.layer.name == "areas" for hit in hits)
+        marked.append(hits[0].row)
+        renderer.edit("areas", remove=hits[0].row)
+        east, north, _ = frame.world[y, x]
+        rows = renderer.edit("areas", add=[Point(east, north).buffer(4.0)], color="red")
+        added.extend(rows.tolist())
+        again = renderer.render().pick(x, y)
+        assert again[0].row == rows[0]
+        assert hits[0].row not in [hit.row for hit in again]
+    assert len(marked) >= 3
+    renderer.lens = None
+    renderer.restyle("areas", opacity=1.0)
+    renderer.restyle("areas", visible=False, where=np.arange(40 + len(added)) >= 40)
+    renderer.update(OBLIQUE)
+    kept = [row for row in range(40) if row not in marked]
+    ids = renderer.render().ids
+    expected = prepared(
+        scene_of({"color": ["tan" if row in kept else "none" for row in range(40)]}, {}), "coverage"
+    )
+    np.testing.assert_array_equal(ids, expected.render().ids)
+
+
+def test_other_threads_may_change_what_is_drawn() -> None:
+    """Each picture is of one of the looks, and none of two."""
+    renderer = prepared(scene_of(PLAIN, {"color": "navy"}))
+    allowed = []
+    for color in ("tan", "crimson"):
+        renderer.restyle("areas", color=color)
+        allowed.append(renderer.render().image.copy())
+    with ThreadPoolExecutor(2) as pool:
+        futures = [pool.submit(lambda: [renderer.restyle("areas", color=c) for c in ("tan", "crimson") * 20])]
+        while not all(future.done() for future in futures):
+            image = renderer.render().image
+            assert any(np.array_equal(image, one) for one in allowed)
+        for future in futures:
+            future.result()
+
+
+def test_two_renderers_change_one_scene_each_for_itself() -> None:
+    scene = scene_of(PLAIN, {})
+    one, other = prepared(scene), prepared(scene)
+    before = other.render()
+    one.restyle("areas", color="red")
+    one.edit("ways", remove=list(range(10)))
+    assert (one.render().image != before.image).any()
+    assert_same(other.render(), before)

@@ -43,7 +43,7 @@ void require_options(const RendererOptions& options) {
 struct RendererState {
     RendererOptions options;
     MemoryAccount memory;
-    std::mutex scene_mutex;  // preprocess may run on another thread
+    std::mutex scene_mutex;  // preprocess and changes may run on another thread
     std::shared_ptr<const PreparedScene> scene;
     std::unique_ptr<Pipeline> pipeline;  // made by the first update
     PictureRequest request;
@@ -71,9 +71,20 @@ struct RendererState {
     // What the camera was updated to is changed with it, so that the next picture shows the change.
     void change_scene(const std::shared_ptr<const PreparedScene>& before,
                       std::shared_ptr<const PreparedScene> after) {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
         if (updated_scene == before)
             updated_scene = after;
-        set_scene(std::move(after));
+        scene = std::move(after);
+    }
+
+    void set_updated_scene(std::shared_ptr<const PreparedScene> updated) {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
+        updated_scene = std::move(updated);
+    }
+
+    std::shared_ptr<const PreparedScene> latest_updated_scene() {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
+        return updated_scene;
     }
 
     // Makes the pipeline draw a request, whatever it drew last.
@@ -195,20 +206,21 @@ UpdateReport Renderer::update(const Camera& camera) {
         camera, options.width, options.height, options.antialias, options.terrain_error, {}};
     const UpdateReport report = state.pipeline->update(scene, request);
     state.request = request;
-    state.updated_scene = scene;
+    state.set_updated_scene(scene);
     state.update_ms = watch.milliseconds();
     return report;
 }
 
 Frame Renderer::render(const Background& background) {
     RendererState& state = *state_;
-    if (!state.updated_scene)
+    auto scene = state.latest_updated_scene();
+    if (!scene)
         throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
     const gl::CurrentScope current(state.pipeline->context());
     auto frame = std::make_shared<FrameState>();
     state.request.background = background;
     frame->renderer = state_;
-    frame->scene = state.updated_scene;
+    frame->scene = std::move(scene);
     frame->request = state.request;
     const Stopwatch watch;
     Pipeline& pipeline = state.pipeline_for(frame->scene, frame->request);
