@@ -3,6 +3,7 @@
 restyle     new colours of all features ÷ a frame          filter    half of them hidden ÷ a frame
 edit        a hundred neighbours moved ÷ a frame           lens      the lens moved, and drawn ÷ a frame
 reorder     all features in another draw order ÷ a frame
+restyled    the first picture after a restyle ÷ a frame: where it shows levels of detail, they are made anew
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def measure(work: Workload, records: Records) -> None:
         frame = times["frame_ms"]
         record = records.at(f"{len(table):,} short lines, {antialias}", VIEW)
         record.update(times)
-        for name in ("restyle", "filter", "edit", "lens", "reorder"):
+        for name in ("restyle", "filter", "edit", "lens", "reorder", "restyled"):
             record[name] = times[f"{name}_ms"] / frame
 
 
@@ -59,10 +60,17 @@ def _changes(renderer: dg.Renderer, layer: dg.Layer, work: Workload, antialias: 
         rows = layer.rows[first : first + EDITED].tolist()
         renderer.edit(layer, move=dict.fromkeys(rows, (3.0, -2.0)))
 
+    def set_lens() -> dict[str, float]:
+        renderer.lens = dg.Lens(circle=(0, 0, 1), styles={layer.index: {"color": "black"}})
+        renderer.render()
+        return {}
+
+    def remove_lens() -> dict[str, float]:
+        renderer.lens = None
+        return {}
+
     def look() -> None:
-        lens = dg.Lens(circle=(0, 0, 1), styles={layer.index: {"color": "black"}})
-        if renderer.lens is None:
-            renderer.lens = lens
+        assert renderer.lens is not None
         x, y = random.uniform(0.3, 0.7, 2) * work.picture
         renderer.lens = renderer.lens.moved(circle=(x, y, work.picture[1] / 4))
         renderer.render()
@@ -70,11 +78,13 @@ def _changes(renderer: dg.Renderer, layer: dg.Layer, work: Workload, antialias: 
     return [
         _timed("frame", lambda: draw(renderer, work.views[VIEW], antialias)),
         _timed("restyle", lambda: renderer.restyle(layer, color=next(colors))),
+        _timed("restyled", renderer.render),
         _timed("filter", lambda: renderer.restyle(layer, visible=random.random(count) < 0.5)),
         _timed("reorder", lambda: renderer.restyle(layer, order=random.random(count))),
         _timed("edit", edit),
+        set_lens,
         _timed("lens", look),
-        _timed("without_lens", lambda: setattr(renderer, "lens", None)),
+        remove_lens,
     ]
 
 
