@@ -86,7 +86,7 @@ Map random_map(Chance& chance) {
 }
 
 std::shared_ptr<const PreparedDecals> build(const std::vector<Layer>& layers,
-                                            const MemoryAccount& memory = {}) {
+                                            const MemoryAccount& memory = MemoryAccount()) {
     TechniqueInput input;
     input.layers = layers;
     input.bounds = bounds;
@@ -169,7 +169,7 @@ TEST_CASE("edits find what an index of the edited data finds", "[static]") {
                 parts.erase(row);
             }
         }
-        decals = as_decals(decals->edited(edit_of(layer, geometry, replaced, removed), {}));
+        decals = as_decals(decals->edited(edit_of(layer, geometry, replaced, removed), MemoryAccount()));
         if (step % 24 == 23)
             CHECK(picks(*decals, rows) == picks(*build(map.layers()), rows_of(map)));
     }
@@ -226,13 +226,13 @@ TEST_CASE("an order of drawing is that of an index built with it", "[static]") {
     look.layer = 1;
     for (int64_t feature = 59; feature >= 0; --feature)
         look.draw_order.push_back((7 * feature + 3) % 60);
-    const auto reordered = build(layers)->restyled(Span<const LayerLook>(&look, 1), {});
+    const auto reordered = build(layers)->restyled(Span<const LayerLook>(&look, 1), MemoryAccount());
     layers[1].draw_order = look.draw_order;
     const auto expected = build(layers);
     CHECK(picks(*reordered, rows_of(map)) == picks(*expected, rows_of(map)));
     CHECK(draw_finest_level(*as_decals(reordered)).texels == draw_finest_level(*expected).texels);
     // And edits keep it.
-    const auto edited = reordered->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {5}), {});
+    const auto edited = reordered->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {5}), MemoryAccount());
     CHECK(edited->query(450.0, 450.0).front() == FeatureReference{1, 60});
 }
 
@@ -244,21 +244,22 @@ TEST_CASE("looks that hide, widen and come back", "[static]") {
     LayerLook look;
     look.layer = 1;
     look.stroke.widths = {30.0};
-    const auto wide = before->restyled(Span<const LayerLook>(&look, 1), {});
+    const auto wide = before->restyled(Span<const LayerLook>(&look, 1), MemoryAccount());
     std::vector<Layer> layers = map.layers();
     layers[1].stroke.widths = {30.0};
     CHECK(picks(*wide, rows_of(map)) == picks(*build(layers), rows_of(map)));
     look.stroke.widths = {30.5};
-    CHECK(test::kind_of([&] { before->restyled(Span<const LayerLook>(&look, 1), {}); }) == ErrorKind::style);
+    CHECK(test::kind_of([&] { before->restyled(Span<const LayerLook>(&look, 1), MemoryAccount()); }) ==
+          ErrorKind::style);
     look.stroke.widths = {0.0};
-    const auto hidden = before->restyled(Span<const LayerLook>(&look, 1), {});
+    const auto hidden = before->restyled(Span<const LayerLook>(&look, 1), MemoryAccount());
     CHECK(as_decals(hidden)->words.data() == before->words.data());
     for (const auto& found : picks(*hidden, rows_of(map)))
         for (const auto& one : found)
             REQUIRE(one.first == 0);
     look.stroke.widths = {6.0};
     look.stroke.colors = {1, 2, 3, 255};
-    const auto back = as_decals(hidden->restyled(Span<const LayerLook>(&look, 1), {}));
+    const auto back = as_decals(hidden->restyled(Span<const LayerLook>(&look, 1), MemoryAccount()));
     CHECK(picks(*back, rows_of(map)) == picks(*before, rows_of(map)));
     CHECK_FALSE(back->has_hidden);
     CHECK(back->look_of(1, 60).stroke.colors[4] == 1);

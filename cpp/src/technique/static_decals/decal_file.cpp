@@ -86,7 +86,7 @@ bool are_lists(const PreparedDecals& decals) {
         bool all = true;
         for (size_t i = begin; i < end; ++i) {
             const uint32_t level = decals.bucket_entries[i] & ((1U << LEVEL_BITS) - 1);
-            all &= level <= FINEST_LEVEL;
+            all &= level == 0 || (COARSEST_LEVEL <= level && level <= FINEST_LEVEL);
             all &= (decals.bucket_entries[i] >> LEVEL_BITS) + (size_t{1} << (2 * level)) <= cells;
         }
         return all;

@@ -87,7 +87,7 @@ public:
     GrowingArray<uint32_t> growing_words;
     uint64_t unused_words = 0;  // of lists that edits have replaced
     // Where two indexes share it, buckets with the same entry look the same in both.
-    std::shared_ptr<const LookToken> look;
+    std::shared_ptr<const LookToken> look_token;
 };
 
 // Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).

@@ -164,7 +164,7 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
         }
     });
     result->styles = charged(SharedArray<DecalStyle>(std::move(changed)), memory, "static: prepared");
-    result->look = std::make_shared<const LookToken>();
+    result->look_token = std::make_shared<const LookToken>();
     result->summarise_styles();
     for (const LayerLook& look : looks)
         if (!look.draw_order.empty() && look.layer < rules.size())

@@ -89,7 +89,7 @@ void StaticDecals::refresh_levels(const PreparedDecals* before, const PreparedDe
                                   gl::Texture2D& levels) {
     if (!levels || before == after)
         return;
-    if (before == nullptr || after == nullptr || before->look != after->look) {
+    if (before == nullptr || after == nullptr || before->look_token != after->look_token) {
         levels = gl::Texture2D();
         return;
     }
