@@ -67,5 +67,11 @@ RATIOS = {
         "{bands_coverage_ms:.1f} ms ÷ one rectangle {rectangle_coverage_ms:.1f} ms, coverage", most=1.1
     ),
     "opaque_stack": Ratio("{opaque_ms:.1f} ms ÷ side by side {disjoint_ms:.1f} ms", most=2.0),
+    "restyle": Ratio("{restyle_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
+    "filter": Ratio("{filter_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
+    "edit": Ratio("{edit_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
+    "lens": Ratio("{lens_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms"),
+    "restyled": Ratio("{restyled_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
+    "reorder": Ratio("{reorder_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
     "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
 }

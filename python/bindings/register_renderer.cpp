@@ -184,6 +184,13 @@ void register_renderer(py::module_& module) {
 
     register_frame(module);
 
+    py::class_<Lens>(module, "Lens")
+        .def(py::init([](double x, double y, double radius, std::vector<double> coordinates,
+                         std::vector<int64_t> ring_offsets) {
+                 return Lens{x, y, radius, std::move(coordinates), std::move(ring_offsets)};
+             }),
+             py::arg("x"), py::arg("y"), py::arg("radius"), py::arg("coordinates"), py::arg("ring_offsets"));
+
     py::class_<Renderer>(module, "Renderer")
         .def(py::init([](int width, int height, const std::string& antialias, double terrain_error,
                          uint64_t memory_limit, const std::string& backend, unsigned threads, int rectangle,
@@ -217,6 +224,13 @@ void register_renderer(py::module_& module) {
         .def("preprocess", &preprocess, py::arg("scene"), py::arg("progress"), py::arg("cache") = "")
         .def("save", &Renderer::save, py::arg("path"), py::call_guard<py::gil_scoped_release>())
         .def("open", &Renderer::open, py::arg("path"), py::call_guard<py::gil_scoped_release>())
+        .def("look", &Renderer::look, py::arg("layer"))
+        .def("restyle", &Renderer::restyle, py::arg("looks"), py::call_guard<py::gil_scoped_release>())
+        .def("edit", &Renderer::edit, py::arg("edit"), py::call_guard<py::gil_scoped_release>())
+        .def("set_lens", &Renderer::set_lens, py::arg("lens"), py::arg("looks"),
+             py::call_guard<py::gil_scoped_release>())
+        .def("move_lens", &Renderer::move_lens, py::arg("lens"))
+        .def("remove_lens", &Renderer::remove_lens)
         .def("layers", [](const Renderer& renderer) { return list_of(renderer.layers()); })
         .def("bounds",
              [](const Renderer& renderer) { return py::tuple(py::cast(corners_of(renderer.bounds()))); })

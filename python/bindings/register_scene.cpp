@@ -6,6 +6,7 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/frame/scene.h"
+#include "decalgl/vector/layer_edit.h"
 #include "register.h"
 
 namespace py = pybind11;
@@ -75,6 +76,20 @@ void add_layer(Scene& scene, const std::string& name, bool polygons, const Array
     scene.layers.push_back(std::move(layer));
 }
 
+LayerEdit make_edit(uint32_t layer, bool polygons, const Array<uint32_t>& removed,
+                    const Array<uint32_t>& replaced, const Array<double>& coordinates,
+                    const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets,
+                    const Array<int64_t>& rows) {
+    LayerEdit edit;
+    edit.layer = layer;
+    edit.removed = vector_of(removed);
+    edit.replaced = vector_of(replaced);
+    edit.geometry =
+        Features::own(polygons ? FeatureKind::polygons : FeatureKind::lines, vector_of(coordinates),
+                      vector_of(part_offsets), vector_of(feature_offsets), vector_of(rows));
+    return edit;
+}
+
 }  // namespace
 
 void register_scene(py::module_& module) {
@@ -88,6 +103,14 @@ void register_scene(py::module_& module) {
         .def_readwrite("altitude", &Relief::altitude)
         .def_readwrite("strength", &Relief::strength)
         .def_readwrite("on_layers", &Relief::on_layers);
+
+    py::class_<LayerEdit>(module, "LayerEdit")
+        .def(py::init(&make_edit), py::arg("layer"), py::arg("polygons"), py::arg("removed"),
+             py::arg("replaced"), py::arg("coordinates"), py::arg("part_offsets"), py::arg("feature_offsets"),
+             py::arg("rows"))
+        .def_readwrite("fill", &LayerEdit::fill)
+        .def_readwrite("stroke", &LayerEdit::stroke)
+        .def_readwrite("casing", &LayerEdit::casing);
 
     py::class_<Scene>(module, "Scene")
         .def(py::init([](const Array<float>& heights, double x0, double y0, double dx, double dy,

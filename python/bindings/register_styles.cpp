@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "decalgl/vector/layer.h"
+#include "decalgl/vector/layer_look.h"
 #include "register.h"
 
 namespace py = pybind11;
@@ -91,6 +92,17 @@ void register_styles(py::module_& module) {
     fill.def(py::init<>()).def_readwrite("hatches", &Fill::hatches);
     def_array(fill, "colors", &Fill::colors);
     def_array(fill, "hatch_of", &Fill::hatch_of);
+    py::class_<DecalLook> decals(module, "DecalLook");
+    decals.def(py::init<>());
+    def_array(decals, "colors", &DecalLook::colors);
+    def_array(decals, "widths", &DecalLook::widths);
+    py::class_<LayerLook> look(module, "LayerLook");
+    look.def(py::init<>())
+        .def_readwrite("layer", &LayerLook::layer)
+        .def_readwrite("fill", &LayerLook::fill)
+        .def_readwrite("stroke", &LayerLook::stroke)
+        .def_readwrite("casing", &LayerLook::casing);
+    def_array(look, "draw_order", &LayerLook::draw_order);
 }
 
 }  // namespace decalgl::bindings

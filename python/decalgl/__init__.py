@@ -30,6 +30,7 @@ from .features import FeatureTable
 from .frame import Frame, Picked, PreparedLayer, Stats
 from .indexes import BvhIndex
 from .layer import Layer
+from .lens import Lens
 from .patterns import Pattern
 from .renderer import Renderer
 from .scene import Relief, Scene
@@ -56,6 +57,7 @@ __all__ = [
     "Hatch",
     "InputError",
     "Layer",
+    "Lens",
     "MemoryLimitError",
     "Outline",
     "Pattern",

@@ -69,6 +69,45 @@ class Fill:
     hatch_of: NDArray[np.uint32]
     def __init__(self) -> None: ...
 
+class DecalLook:
+    colors: NDArray[np.uint8]
+    widths: NDArray[np.float64]
+    def __init__(self) -> None: ...
+
+class LayerLook:
+    layer: int
+    fill: DecalLook
+    stroke: DecalLook
+    casing: DecalLook
+    draw_order: NDArray[np.int64]
+    def __init__(self) -> None: ...
+
+class LayerEdit:
+    fill: DecalLook
+    stroke: DecalLook
+    casing: DecalLook
+    def __init__(
+        self,
+        layer: int,
+        polygons: bool,
+        removed: NDArray[np.uint32],
+        replaced: NDArray[np.uint32],
+        coordinates: NDArray[np.float64],
+        part_offsets: NDArray[np.int64],
+        feature_offsets: NDArray[np.int64],
+        rows: NDArray[np.int64],
+    ) -> None: ...
+
+class Lens:
+    def __init__(
+        self,
+        x: float,
+        y: float,
+        radius: float,
+        coordinates: Sequence[float],
+        ring_offsets: Sequence[int],
+    ) -> None: ...
+
 class Scene:
     def __init__(
         self,
@@ -143,6 +182,12 @@ class Renderer:
     ) -> None: ...
     def save(self, path: bytes) -> None: ...
     def open(self, path: bytes) -> None: ...
+    def look(self, layer: int) -> LayerLook: ...
+    def restyle(self, looks: Sequence[LayerLook]) -> None: ...
+    def edit(self, edit: LayerEdit) -> None: ...
+    def set_lens(self, lens: Lens, looks: Sequence[LayerLook]) -> None: ...
+    def move_lens(self, lens: Lens) -> None: ...
+    def remove_lens(self) -> None: ...
     def layers(self) -> list[tuple[str, Literal["polygons", "lines"], NDArray[np.int64]]]: ...
     def bounds(self) -> tuple[float, float, float, float]: ...
     def update(self, camera: Camera) -> dict[str, int]: ...

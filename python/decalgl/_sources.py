@@ -93,6 +93,21 @@ class Attributes:
             )
         return np.asarray(numbers, dtype=np.float64)
 
+    def joined(self, more: Attributes) -> Attributes:
+        """These rows and then those of `more`, which miss the columns that they have not."""
+        names = list(dict.fromkeys((*self.names, *more.names)))
+
+        def read(name: Any) -> NDArray[Any]:
+            parts = [
+                each.column(name) if name in each.names else np.full(each.count, np.nan)
+                for each in (self, more)
+                if each.count
+            ]
+            same_kind = len({part.dtype.kind in "iufb" for part in parts}) == 1
+            return np.concatenate(parts if same_kind else [part.astype(object) for part in parts])
+
+        return Attributes(self.layer_name, self.count + more.count, names, read)
+
 
 @dataclass(frozen=True)
 class Source:

@@ -12,6 +12,7 @@ from . import legend as legends
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from ._sources import Attributes
     from .coloring import Coloring
     from .features import FeatureTable, Kind
     from .strokes import Fill, OutlineMode, OutlineOrder, Stroke
@@ -29,6 +30,7 @@ class Layer:
         or each over its own feature's.
     draw_order: int64 (features), features from bottom to top.
     coloring: how the colours came about, for legends; of polygons' outlines `outline_coloring`, None without.
+    attributes: the columns beside the geometry, for restyling by them.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Layer:
     outline_mode: OutlineMode = "normal"
     outline_order: OutlineOrder = "layer"
     outline_coloring: Coloring | None = field(default=None, repr=False)
+    attributes: Attributes | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         self.draw_order.flags.writeable = False

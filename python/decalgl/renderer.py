@@ -16,6 +16,7 @@ import numpy as np
 
 from . import _core
 from ._antialias import checked_antialias, checked_samples
+from ._changes import LayerChanges
 from ._colors import parse_color
 from ._core_scene import core_scene
 from ._raster import check_memory
@@ -27,7 +28,10 @@ from .indexes import BvhIndex, resolve_index
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from numpy.typing import NDArray
+
     from .camera import Camera
+    from .lens import Lens
     from .scene import Layer, Scene
 
     AnyLayer: TypeAlias = Layer | PreparedLayer
@@ -114,6 +118,7 @@ class Renderer:
             samples=self._samples,
         )
         self.size = (width, height)
+        self._changes = LayerChanges(self._core)
         self._prepared: tuple[Any, ...] = ()
         self._cache: bytes = b""
         self._prepared_layers: tuple[AnyLayer, ...] = ()
@@ -145,7 +150,8 @@ class Renderer:
         """
         state = (scene.terrain, scene.exaggeration, scene.relief, scene.layers)
         cache_name = b"" if cache is None else _file_name(cache)
-        if self._prepared == state and cache_name in (b"", self._cache):
+        is_there = self._prepared == state and cache_name in (b"", self._cache)
+        if is_there and not self._changes:
             return
         stop = _ExceptionKeeper(progress) if progress is not None else None
         try:
@@ -157,6 +163,7 @@ class Renderer:
         self._prepared = state
         self._cache = cache_name
         self._prepared_layers = scene.layers
+        self._changes.begin(scene.layers, scene.terrain.crs)
 
     def save(self, path: PathLike) -> None:
         """Writes what is prepared to a file that `open` takes; a file that is there is replaced as a whole.
@@ -180,6 +187,71 @@ class Renderer:
             PreparedLayer(name, index, kind, rows)
             for index, (name, kind, rows) in enumerate(self._core.layers())
         )
+        self._changes.begin(self._prepared_layers)
+
+    def restyle(self, layer: AnyLayer | str | int, **keywords: Any) -> None:
+        """Other looks for a layer, without preparing anew; the next `render` shows them.
+
+        layer: a layer of the scene, its name or its place.
+        color, column, cmap, vmin, vmax, norm, alpha, categorical, missing_kwds: colours, as in
+            `Scene.add_polygons`; of the fills of polygons or the strokes of lines. cmap= and vmin= ... without
+            column= colour by the column of before.
+        width: metres, one or one a row, up to the `widest` that the layer was made with.
+        visible: which features are there: True or False, one a row, an expression by column such as
+            "kind == 'primary' and lanes >= 2", or a function that takes the columns and gives one a row.
+        opacity: a factor on what is seen, 0 to 1: one, one a row, or {category: factor} by the column `by`,
+            which is the one that the layer is coloured by unless another is named. It fades what has colours.
+        order: "feature", "size", a column or numbers, as in `Scene.add_polygons`.
+        where: the rows that all of this but `order` changes, given as `visible` is; the others stay as they are.
+        outline, casing: dicts of color ... width, for outlines of polygons and casings of lines.
+
+        Each keyword stays until it is given again. What the scene says is not changed: `preprocess(scene)` gives
+        the original again. Frames of before, their ids and picks stay right.
+
+        Raises StyleError, ColumnError and InputError, which leave everything as it was; UnsupportedError for
+        index="bvh".
+        """
+        self._changes.restyle(layer, keywords)
+
+    def edit(
+        self,
+        layer: AnyLayer | str | int,
+        *,
+        add: Any = None,
+        remove: Any = None,
+        move: Mapping[int, tuple[float, float]] | None = None,
+        replace: Mapping[int, Any] | None = None,
+        **style: Any,
+    ) -> NDArray[np.int64]:
+        """Adds, removes, moves and replaces features of a layer; only what lies around them is prepared anew.
+
+        add: features, as `Scene.add_polygons` and `add_lines` read them; geometries alone are in the scene's
+            CRS, as `frame.world` is, unless crs= says another. They come on top of the layer, and their rows
+            follow those of the layer's data.
+        remove: rows. move: {row: (dx, dy)} in metres. replace: {row: geometry}, in the scene's CRS unless crs=
+            says another.
+        style: color, column, cmap ... alpha and width of what is added, and crs. Without, it looks as the
+            layer does, where that is of one colour and width. Outlines and casings are those of the layer.
+
+        Returns the rows of what was added, int64, those without geometry left out. The next `render` shows the
+        edit. As with `restyle`, the scene is not changed, and frames of before stay right.
+
+        Raises InputError for rows without a feature, what `Scene.add_lines` raises, and UnsupportedError for
+        index="bvh" and for what was opened from a file, which has no vertices; all leave everything as it was.
+        """
+        return self._changes.edit(layer, add, remove, move, replace, style)
+
+    @property
+    def lens(self) -> Lens | None:
+        """A part of the picture in which layers look otherwise, or None. A lens that is `moved` costs nothing.
+
+        Raises what `restyle` raises.
+        """
+        return self._changes.lens
+
+    @lens.setter
+    def lens(self, lens: Lens | None) -> None:
+        self._changes.set_lens(lens)
 
     @property
     def layers(self) -> tuple[AnyLayer, ...]:

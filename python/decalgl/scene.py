@@ -301,7 +301,9 @@ class Scene:
         widest = WIDEST_LINE * (max(x1 - x0, y1 - y0) or 1.0)
         resolved = looks.resolve(LayerRows(name, attributes, table.rows, widest))
         draw_order = draw_order_of(order, table, attributes)
-        layer = Layer(name, len(self._layers), table, draw_order, **vars(resolved))
+        layer = Layer(
+            name, len(self._layers), table, draw_order, **vars(resolved), attributes=attributes
+        )
         if layer.coloring.legend:
             require_drawable(layer)
         self._layers.append(layer)
@@ -361,8 +363,12 @@ def draw_order_of(order: Any, table: FeatureTable, attributes: Attributes) -> ND
     if isinstance(order, str) and order == "feature":
         return np.arange(len(table), dtype=np.int64)
     if isinstance(order, str) and order == "size":
-        keys = table.sizes()
-    else:
-        keys = attributes.numbers(order, "order")[table.rows]
-        keys[np.isnan(keys)] = -np.inf
+        return np.argsort(table.sizes(), kind="stable").astype(np.int64)
+    return draw_order_by(order, table.rows, attributes)
+
+
+def draw_order_by(order: Any, rows: NDArray[np.int64], attributes: Attributes) -> NDArray[np.int64]:
+    """Features from bottom to top by a column or numbers, one a row. Raises ColumnError, InputError."""
+    keys = attributes.numbers(order, "order")[rows]
+    keys[np.isnan(keys)] = -np.inf
     return np.argsort(keys, kind="stable").astype(np.int64)

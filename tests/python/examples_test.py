@@ -56,6 +56,16 @@ def test_first_map(tmp_path: Path) -> None:
     assert size_and_colors(picture)[0] == (960, 540)
 
 
+def test_interactive(tmp_path: Path) -> None:
+    out = run("interactive.py", "--out", tmp_path, "--size", SMALL)
+    assert "picked: land cover" in out
+    assert "added: streams and roads, row" in out
+    pictures = {path.stem[2:]: np.asarray(Image.open(path)) for path in tmp_path.glob("*.png")}
+    assert len(pictures) == 9
+    assert (pictures["added"] != pictures["without_lens"]).any()
+    assert (pictures["removed"] == pictures["without_lens"]).all()
+
+
 def test_around_the_crest(tmp_path: Path) -> None:
     run("around_the_crest.py", "--out", tmp_path, "--views", 2, "--size", SMALL)
     first, second = sorted(tmp_path.glob("*.png"))

@@ -365,7 +365,7 @@ TEST_CASE("many large polygons over each other do not fill the memory", "[static
         rings.push_back({1000 + inset, 2000 + inset, 1900, 2000, 1900, 2900, 1000, 2900 - inset});
     }
     const auto decals = build({polygons(rings)});
-    CHECK(decals->charge.bytes() < (uint64_t{128} << 20));
+    CHECK(decals->counts().bytes < (uint64_t{128} << 20));
     CHECK(decals->query(1500, 2500).size() == rings.size());
 }
 

@@ -98,16 +98,20 @@ void Pipeline::draw_terrain(const Piece& piece, gl::Flags flags) {
 void Pipeline::draw_overlay(const SeenTargets& seen, Antialias antialias) {
     View view = view_;
     view.antialias = antialias;
-    for (const auto& technique : techniques_) {
-        const gl::PassTimer timer(&timings_, technique->name());
+    const GBufferView surface = look_through_lens(seen);
+    for (size_t i = 0; i < techniques_.size(); ++i) {
+        if (!scene_->passes[i].shows_anything())
+            continue;
+        const gl::PassTimer timer(&timings_, techniques_[i]->name());
         seen.overlay_framebuffer.bind();
-        technique->draw(view, seen.gbuffer.view(), programs_);
+        techniques_[i]->draw(view, surface, programs_);
     }
 }
 
 void Pipeline::compose(const SeenTargets& seen, const gl::Framebuffer& target, gl::Flags flags) {
     const gl::PassTimer timer(&timings_, "compose");
-    if (!techniques_.empty())
+    const bool is_laid_over = targets_->needs.has_overlay;
+    if (is_laid_over)
         flags.insert("OVERLAY");
     gl::Program& program = programs_.get("compose", flags);
     target.bind();
@@ -118,7 +122,7 @@ void Pipeline::compose(const SeenTargets& seen, const gl::Framebuffer& target, g
     seen.gbuffer.surface.bind(1);
     program.set("base_texture", 2);
     seen.gbuffer.base.bind(2);
-    if (!techniques_.empty()) {
+    if (is_laid_over) {
         program.set("overlay_texture", 3);
         seen.overlay.bind(3);
         program.set("layer_shading", static_cast<float>(scene_->relief.on_layers));

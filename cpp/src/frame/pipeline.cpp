@@ -44,6 +44,12 @@ int border_of(Antialias antialias) {
     return antialias == Antialias::fxaa ? fxaa_reach : antialias == Antialias::coverage ? 1 : 0;
 }
 
+// Whether any layer is seen: else there is no overlay, and no texture for one.
+bool has_overlay(const PreparedScene& scene) {
+    return std::any_of(scene.passes.begin(), scene.passes.end(),
+                       [](const PreparedPass& pass) { return pass.shows_anything(); });
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
@@ -65,27 +71,67 @@ bool Pipeline::draws(const PreparedScene* scene, const PictureRequest& request) 
 }
 
 void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
-    // The old scene goes first: both at once may not fit.
-    techniques_.clear();
-    terrain_.reset();
-    scene_.reset();
-    terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
-    for (const PreparedPass& pass : scene->passes) {
-        techniques_.push_back(make_technique(pass.technique));
-        techniques_.back()->upload(pass.prepared, memory_);
+    const auto techniques_of = [](const PreparedScene& of) {
+        std::vector<std::string> names;
+        for (const PreparedPass& pass : of.passes)
+            names.push_back(pass.technique);
+        return names;
+    };
+    const bool is_change =
+        scene_ && scene_->shares_ground(*scene) && techniques_of(*scene_) == techniques_of(*scene);
+    try {
+        if (!is_change) {
+            // The old scene goes first: both at once may not fit.
+            techniques_.clear();
+            terrain_.reset();
+            scene_.reset();
+            terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
+            for (const PreparedPass& pass : scene->passes)
+                techniques_.push_back(make_technique(pass.technique));
+        }
+        for (size_t i = 0; i < techniques_.size(); ++i)
+            techniques_[i]->upload(scene->passes[i].prepared, scene->passes[i].in_lens, memory_);
+        gl::check_errors("uploading the scene");
+    } catch (...) {
+        scene_.reset();
+        throw;
     }
-    gl::check_errors("uploading the scene");
     scene_ = std::move(scene);
 }
 
 UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
-    timings_.clear();
     at_centres_ = nullptr;
+    return update_layers(std::move(scene), request);
+}
+
+UpdateReport Pipeline::update_layers(std::shared_ptr<const PreparedScene> scene,
+                                     const PictureRequest& request) {
+    timings_.clear();
+    const bool shows_surface = at_centres_ != nullptr && scene_ && scene_->shares_ground(*scene) &&
+                               same_view(request_, request) && request_.antialias == request.antialias &&
+                               targets_->needs.has_overlay == has_overlay(*scene);
+    if (!shows_surface)
+        at_centres_ = nullptr;
     if (scene_ != scene) {
         const gl::PassTimer timer(&timings_, "upload");
         upload(std::move(scene));
     }
     request_ = request;
+    if (!shows_surface)
+        set_view();
+    UpdateReport report;
+    report.shader_steps = context_->info().software ? software_shader_steps : 0;
+    for (const auto& technique : techniques_) {
+        const UpdateReport part = technique->update(view_);
+        report.pieces += part.pieces;
+        report.bytes += part.bytes;
+        report.longest_walk = std::max(report.longest_walk, part.longest_walk);
+    }
+    return report;
+}
+
+void Pipeline::set_view() {
+    const PictureRequest& request = request_;
     tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
                           request.terrain_error);
     view_ = {request.width,
@@ -99,15 +145,6 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     terrain_->set_levels(tiles_);
     choose_pieces();
     make_targets();
-    UpdateReport report;
-    report.shader_steps = context_->info().software ? software_shader_steps : 0;
-    for (const auto& technique : techniques_) {
-        const UpdateReport part = technique->update(view_);
-        report.pieces += part.pieces;
-        report.bytes += part.bytes;
-        report.longest_walk = std::max(report.longest_walk, part.longest_walk);
-    }
-    return report;
 }
 
 void Pipeline::choose_pieces() {
@@ -160,7 +197,7 @@ void Pipeline::make_targets() {
     }
     needs.antialias = request_.antialias;
     needs.multisamples = request_.antialias == Antialias::msaa ? multisamples() : 0;
-    needs.has_overlay = !techniques_.empty();
+    needs.has_overlay = has_overlay(*scene_);
     needs.has_depth = std::any_of(techniques_.begin(), techniques_.end(),
                                   [&](const auto& technique) { return technique->needs_depth(view_); });
     if (targets_ && targets_->needs == needs)
@@ -189,6 +226,21 @@ void Pipeline::read_shown(const gl::Framebuffer& framebuffer, GLenum attachment,
     }
 }
 
+bool Pipeline::has_lens() const {
+    return scene_->lens && has_overlay(*scene_);
+}
+
+// The G-buffer with the mask of the lens, drawn for the piece that it holds.
+GBufferView Pipeline::look_through_lens(const SeenTargets& seen) {
+    GBufferView view = seen.gbuffer.view();
+    if (!has_lens())
+        return view;
+    const gl::PassTimer timer(&timings_, "lens");
+    lens_mask_.draw(scene_->lens, request_, scene_->positions, seen.gbuffer, programs_, memory_);
+    view.lens = &lens_mask_.texture();
+    return view;
+}
+
 std::vector<uint8_t> Pipeline::draw_image() {
     const size_t bytes = 4 * static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     const MemoryCharge charge(memory_, "frame: image", bytes);
@@ -200,7 +252,8 @@ std::vector<uint8_t> Pipeline::draw_image() {
             const gl::PassTimer timer(&timings_, "readback");
             read_shown(targets_->picture_framebuffer, GL_COLOR_ATTACHMENT0, GL_RGBA8, piece, image);
         }
-        if (silhouettes_)
+        // The lens is known for the pixels of the picture alone.
+        if (silhouettes_ && !has_lens())
             redraw_silhouettes(piece, image);
     }
     gl::check_errors("drawing the picture");
@@ -210,16 +263,19 @@ std::vector<uint8_t> Pipeline::draw_image() {
 std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     std::vector<std::vector<uint32_t>> ids(techniques_.size(), std::vector<uint32_t>(pixels, 0));
-    if (techniques_.empty())
+    if (!targets_->needs.has_overlay)
         return ids;
     const gl::Texture2D target =
         gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, targets_->needs.width, targets_->needs.height);
     const gl::Framebuffer framebuffer = gl::Framebuffer::create("ids", {{GL_COLOR_ATTACHMENT0, &target}});
     for (const Piece& piece : pieces_) {
         draw_centres(piece);
+        const GBufferView view = look_through_lens(targets_->seen);
         for (size_t i = 0; i < techniques_.size(); ++i) {
+            if (!scene_->passes[i].shows_anything())
+                continue;
             framebuffer.bind();
-            techniques_[i]->draw_ids(view_, targets_->seen.gbuffer.view(), programs_);
+            techniques_[i]->draw_ids(view_, view, programs_);
             read_shown(framebuffer, GL_COLOR_ATTACHMENT0, GL_R32UI, piece, ids[i]);
         }
     }

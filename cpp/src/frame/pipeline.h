@@ -12,6 +12,7 @@
 
 #include "decalgl/frame/picture_request.h"
 #include "decalgl/frame/renderer.h"
+#include "frame/lens_mask.h"
 #include "frame/prepared_scene.h"
 #include "frame/silhouettes.h"
 #include "frame/targets.h"
@@ -29,6 +30,8 @@ public:
     // Uploads what is not there yet and sets the view up. Throws Error(memory) where the picture is larger
     // than the driver can draw or the budget holds.
     UpdateReport update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
+    // The same, but what was drawn of the surface stays where scene and view still show it.
+    UpdateReport update_layers(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
 
     // Everything below draws what update() was last given; arrays have row 0 at the top.
     std::vector<uint8_t> draw_image();
@@ -54,6 +57,10 @@ private:
     using PieceFn = std::function<void(const Piece&)>;
 
     void upload(std::shared_ptr<const PreparedScene> scene);
+    void upload_layers(const PreparedScene& scene);
+    void set_view();
+    bool has_lens() const;
+    GBufferView look_through_lens(const SeenTargets& seen);
     void choose_pieces();
     void make_targets();
     int multisamples() const;
@@ -97,6 +104,7 @@ private:
     uint64_t triangles_ = 0;
     uint64_t silhouette_pixels_ = 0;
 
+    LensMask lens_mask_;
     std::unique_ptr<Targets> targets_;
     std::unique_ptr<Silhouettes> silhouettes_;  // with coverage
     const Piece* at_centres_ = nullptr;         // the piece whose pixel centres the G-buffer holds, if any

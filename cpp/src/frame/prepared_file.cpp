@@ -133,7 +133,7 @@ TerrainTiles read_tiles(const ArchiveReader& archive, const SceneRecord& record)
     }
     if (!fits)
         archive.refuse("its tiles do not fit its terrain");
-    tiles.tiles.assign(saved.begin(), saved.end());
+    tiles.tiles = saved;
     return tiles;
 }
 
@@ -229,7 +229,7 @@ void save_scene(const PreparedScene& scene, const std::string& path, unsigned th
     archive.add_value("scene", record_of(scene));
     archive.add("relief ramp", Span<const uint8_t>(scene.relief.ramp));
     save_layers(scene.layers, archive);
-    archive.add("tiles", Span<const TerrainTile>(scene.tiles.tiles));
+    archive.add("tiles", scene.tiles.tiles.span());
     archive.add("heights", scene.terrain.heights().span());
     archive.add("illumination", scene.illumination.span());
     for (size_t i = 0; i < scene.passes.size(); ++i) {

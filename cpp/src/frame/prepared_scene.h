@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "decalgl/core/timing.h"
+#include "decalgl/frame/lens.h"
 #include "decalgl/frame/prepared_layer.h"
 #include "decalgl/frame/renderer.h"
 #include "decalgl/frame/scene.h"
@@ -19,8 +20,14 @@ namespace decalgl {
 struct PreparedPass {
     std::string technique;
     std::shared_ptr<const Prepared> prepared;
+    std::shared_ptr<const Prepared> in_lens;  // what is seen inside the lens; null without one
+
+    bool shows_anything() const {
+        return prepared->shows_anything() || (in_lens && in_lens->shows_anything());
+    }
 };
 
+// Copies are cheap: whatever is large is shared.
 struct PreparedScene {
     Heightfield terrain;  // exaggerated
     TerrainTiles tiles;
@@ -29,12 +36,17 @@ struct PreparedScene {
     PositionGrid positions;
     std::vector<PreparedPass> passes;  // bottom to top
     std::vector<PreparedLayer> layers;
+    std::shared_ptr<const Lens> lens;  // null: none
+    std::vector<LayerLook> lens_looks;
     SceneFingerprint fingerprint;
     TimingLog timings{true};
     double milliseconds = 0.0;
 
     int64_t row_of(FeatureReference reference) const {
         return layers[reference.layer].rows[reference.feature];
+    }
+    bool shares_ground(const PreparedScene& other) const {
+        return illumination.data() == other.illumination.data();
     }
 };
 

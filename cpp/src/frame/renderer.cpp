@@ -8,6 +8,7 @@
 #include "frame/pipeline.h"
 #include "frame/prepared_file.h"
 #include "frame/sample_pattern.h"
+#include "frame/scene_changes.h"
 #include "frame/stats.h"
 
 namespace decalgl {
@@ -46,7 +47,7 @@ void require_options(const RendererOptions& options) {
 struct RendererState {
     RendererOptions options;
     MemoryAccount memory;
-    std::mutex scene_mutex;  // preprocess may run on another thread
+    std::mutex scene_mutex;  // preprocess and changes may run on another thread
     std::shared_ptr<const PreparedScene> scene;
     std::unique_ptr<Pipeline> pipeline;  // made by the first update
     PictureRequest request;
@@ -71,11 +72,30 @@ struct RendererState {
         scene = std::move(prepared);
     }
 
+    // What the camera was updated to is changed with it, so that the next picture shows the change.
+    void change_scene(const std::shared_ptr<const PreparedScene>& before,
+                      std::shared_ptr<const PreparedScene> after) {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
+        if (updated_scene == before)
+            updated_scene = after;
+        scene = std::move(after);
+    }
+
+    void set_updated_scene(std::shared_ptr<const PreparedScene> updated) {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
+        updated_scene = std::move(updated);
+    }
+
+    std::shared_ptr<const PreparedScene> latest_updated_scene() {
+        const std::lock_guard<std::mutex> lock(scene_mutex);
+        return updated_scene;
+    }
+
     // Makes the pipeline draw a request, whatever it drew last.
     Pipeline& pipeline_for(const std::shared_ptr<const PreparedScene>& wanted,
                            const PictureRequest& wanted_request) {
         if (!pipeline->draws(wanted.get(), wanted_request))
-            pipeline->update(wanted, wanted_request);
+            pipeline->update_layers(wanted, wanted_request);
         return *pipeline;
     }
 };
@@ -132,6 +152,42 @@ void Renderer::open(const std::string& path) {
     state_->set_scene(open_scene(path, state_->options.threads, state_->memory));
 }
 
+LayerLook Renderer::look(uint32_t layer) const {
+    const auto scene = state_->require_scene("look at");
+    require_layer(*scene, layer);
+    LayerLook look;
+    look.layer = layer;
+    return scene->passes.empty()
+               ? look
+               : scene->passes[0].prepared->look_of(layer, scene->layers[layer].rows.size());
+}
+
+void Renderer::restyle(const std::vector<LayerLook>& looks) {
+    const auto before = state_->require_scene("restyle");
+    state_->change_scene(before, restyled_scene(*before, looks, state_->memory));
+}
+
+void Renderer::edit(const LayerEdit& edit) {
+    const auto before = state_->require_scene("edit");
+    state_->change_scene(before, edited_scene(*before, edit, state_->memory));
+}
+
+void Renderer::set_lens(const Lens& lens, const std::vector<LayerLook>& looks) {
+    const auto before = state_->require_scene("look at");
+    state_->change_scene(before,
+                         scene_with_lens(*before, std::make_shared<const Lens>(lens), looks, state_->memory));
+}
+
+void Renderer::move_lens(const Lens& lens) {
+    const auto before = state_->require_scene("look at");
+    state_->change_scene(before, scene_with_moved_lens(*before, std::make_shared<const Lens>(lens)));
+}
+
+void Renderer::remove_lens() {
+    const auto before = state_->require_scene("look at");
+    state_->change_scene(before, scene_with_lens(*before, nullptr, {}, state_->memory));
+}
+
 std::vector<PreparedLayer> Renderer::layers() const {
     return state_->require_scene("describe")->layers;
 }
@@ -154,20 +210,21 @@ UpdateReport Renderer::update(const Camera& camera) {
         camera, options.width, options.height, options.antialias, options.terrain_error, {}};
     const UpdateReport report = state.pipeline->update(scene, request);
     state.request = request;
-    state.updated_scene = scene;
+    state.set_updated_scene(scene);
     state.update_ms = watch.milliseconds();
     return report;
 }
 
 Frame Renderer::render(const Background& background) {
     RendererState& state = *state_;
-    if (!state.updated_scene)
+    auto scene = state.latest_updated_scene();
+    if (!scene)
         throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
     const gl::CurrentScope current(state.pipeline->context());
     auto frame = std::make_shared<FrameState>();
     state.request.background = background;
     frame->renderer = state_;
-    frame->scene = state.updated_scene;
+    frame->scene = std::move(scene);
     frame->request = state.request;
     const Stopwatch watch;
     Pipeline& pipeline = state.pipeline_for(frame->scene, frame->request);
@@ -254,9 +311,11 @@ std::vector<PickedFeature> Frame::pick(int x, int y) const {
     const std::vector<double>& positions = world();
     std::vector<PickedFeature> picked;
     const PreparedScene& scene = *state_->scene;
+    const double map_x = positions[3 * pixel], map_y = positions[3 * pixel + 1];
+    const bool in_lens = scene.lens && scene.lens->contains(x + 0.5, y + 0.5, map_x, map_y);
     for (size_t pass = scene.passes.size(); pass-- > 0;) {
-        for (const FeatureReference& reference :
-             scene.passes[pass].prepared->query(positions[3 * pixel], positions[3 * pixel + 1]))
+        const Prepared& seen = in_lens ? *scene.passes[pass].in_lens : *scene.passes[pass].prepared;
+        for (const FeatureReference& reference : seen.query(map_x, map_y))
             picked.push_back({static_cast<int32_t>(reference.layer), scene.row_of(reference)});
     }
     return picked;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "decalgl/core/parallel.h"
 
@@ -76,14 +78,15 @@ TerrainTiles TerrainTiles::over(const Heightfield& heightfield, unsigned threads
     TerrainTiles result;
     result.columns = (heightfield.columns() - 1 + tile_quads - 1) / tile_quads;
     result.rows = (heightfield.rows() - 1 + tile_quads - 1) / tile_quads;
-    result.tiles.resize(static_cast<size_t>(result.columns) * static_cast<size_t>(result.rows));
-    parallel_for(result.tiles.size(), 4, threads, [&](size_t begin, size_t end) {
+    std::vector<TerrainTile> tiles(static_cast<size_t>(result.columns) * static_cast<size_t>(result.rows));
+    parallel_for(tiles.size(), 4, threads, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const auto column = static_cast<int32_t>(i) % result.columns;
             const auto row = static_cast<int32_t>(i) / result.columns;
-            result.tiles[i] = measure_tile(heightfield, {column * tile_quads, row * tile_quads});
+            tiles[i] = measure_tile(heightfield, {column * tile_quads, row * tile_quads});
         }
     });
+    result.tiles = std::move(tiles);
     const auto& heights = heightfield.heights();
     result.has_holes = std::any_of(heights.begin(), heights.end(), [](float h) { return std::isnan(h); });
     return result;

@@ -5,11 +5,11 @@
 namespace decalgl {
 namespace {
 
-void add_if_seen(const Layer& layer, const Decal& decal, std::vector<Decal>& decals) {
+void add_if_seen(const Layer& layer, const Decal& decal, Hidden hidden, std::vector<Decal>& decals) {
     const DecalView view{&layer, decal};
     if (decal.is_stroke() ? view.stroke().empty() || view.widest_half_width() <= 0.0 : layer.fill.empty())
         return;
-    if (view.color()[3] != 0)
+    if (hidden == Hidden::kept || view.color()[3] != 0)
         decals.push_back(decal);
 }
 
@@ -28,7 +28,7 @@ double DecalView::widest_half_width() const {
     return std::max(half_width(), cut() == OutlineMode::normal ? 0.5 * stroke().widest : stroke().widest);
 }
 
-std::vector<Decal> decals_of(Span<const Layer> layers, uint32_t first_layer) {
+std::vector<Decal> decals_of(Span<const Layer> layers, uint32_t first_layer, Hidden hidden) {
     std::vector<Decal> decals;
     for (size_t l = 0; l < layers.size(); ++l) {
         const Layer& layer = layers[l];
@@ -39,7 +39,7 @@ std::vector<Decal> decals_of(Span<const Layer> layers, uint32_t first_layer) {
                     layer,
                     {{first_layer + static_cast<uint32_t>(l), static_cast<uint32_t>(layer.feature_at(rank))},
                      role},
-                    decals);
+                    hidden, decals);
         };
         if (lines || layer.outline_order == OutlineOrder::layer) {
             add_all(lines ? DecalRole::casing : DecalRole::fill);
@@ -49,8 +49,8 @@ std::vector<Decal> decals_of(Span<const Layer> layers, uint32_t first_layer) {
         for (size_t rank = 0; rank < layer.features.feature_count(); ++rank) {
             const FeatureReference feature{first_layer + static_cast<uint32_t>(l),
                                            static_cast<uint32_t>(layer.feature_at(rank))};
-            add_if_seen(layer, {feature, DecalRole::fill}, decals);
-            add_if_seen(layer, {feature, DecalRole::stroke}, decals);
+            add_if_seen(layer, {feature, DecalRole::fill}, hidden, decals);
+            add_if_seen(layer, {feature, DecalRole::stroke}, hidden, decals);
         }
     }
     return decals;

@@ -11,9 +11,11 @@
 
 #include "decalgl/core/progress.h"
 #include "decalgl/frame/frame.h"
+#include "decalgl/frame/lens.h"
 #include "decalgl/frame/picture_request.h"
 #include "decalgl/frame/prepared_layer.h"
 #include "decalgl/frame/scene.h"
+#include "decalgl/vector/layer_edit.h"
 
 namespace decalgl {
 
@@ -53,6 +55,22 @@ public:
     // The file must not be overwritten in place while it is in use; save() puts a new one in its place.
     // Throws Error(file) that says what is wrong with the file and what to do.
     void open(const std::string& path);
+
+    // Changes of what is prepared, seen by the next render(); frames made before stay right. preprocess() and
+    // open() end them. All throw Error(input) where nothing is prepared.
+
+    // Other looks of layers, without preparing anew. Throws Error(style) for what needs that, Error(unsupported)
+    // for an index that cannot.
+    LayerLook look(uint32_t layer) const;
+    void restyle(const std::vector<LayerLook>& looks);
+    // Features of a layer added, removed or given another geometry, with an update of what lies around them alone.
+    // Throws Error(unsupported) where what is prepared was opened from a file.
+    void edit(const LayerEdit& edit);
+    // Other looks inside a lens; what they leave open is as outside.
+    void set_lens(const Lens& lens, const std::vector<LayerLook>& looks);
+    // Nothing is made or uploaded but the lens itself.
+    void move_lens(const Lens& lens);
+    void remove_lens();
 
     // Of what is prepared. Throw Error(input) where nothing is.
     std::vector<PreparedLayer> layers() const;

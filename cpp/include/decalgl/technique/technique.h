@@ -1,8 +1,9 @@
 // The contract between a frame and the ways to drape vectors over a terrain.
 //
 //     layers ─▶ preprocess ─▶ Prepared ─▶ upload ─▶ update(view) ─▶ draw, draw_ids
-//               any thread     plain        GL thread from here on
-//               no GL          arrays
+//               any thread    │ ▲ plain     GL thread from here on
+//               no GL         ▼ │ arrays
+//                        restyled, edited
 //                              save │ ▲ open
 //                                   ▼ │
 //                                  a file
@@ -22,6 +23,8 @@
 #include "decalgl/core/progress.h"
 #include "decalgl/vector/decal.h"
 #include "decalgl/vector/layer.h"
+#include "decalgl/vector/layer_edit.h"
+#include "decalgl/vector/layer_look.h"
 
 namespace decalgl::gl {
 class Framebuffer;
@@ -78,6 +81,19 @@ public:
     // Adds what Technique::open needs, in sections whose names begin with `prefix`. They may point into this
     // object, which outlives the writing.
     virtual void save(ArchiveWriter& archive, const std::string& prefix) const = 0;
+    // Whether anything is to be drawn: not where all features are fully transparent.
+    virtual bool shows_anything() const = 0;
+    // How a layer of so many features looks: all its colours and widths, of features without a decal 0.
+    virtual LayerLook look_of(uint32_t layer, size_t features) const = 0;
+    // The same features with other looks: a new index that shares whatever stays. Throws Error(style) for what
+    // needs preparing anew, Error(unsupported) where the technique cannot.
+    virtual std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
+                                                     const MemoryAccount& memory) const = 0;
+    // With features added, removed or replaced: a new index that shares whatever lies elsewhere. Throws
+    // Error(unsupported) where the technique cannot or the index was opened from a file, Error(input),
+    // Error(style), Error(memory).
+    virtual std::shared_ptr<const Prepared> edited(const LayerEdit& edit,
+                                                   const MemoryAccount& memory) const = 0;
 };
 
 // What a pixel shows of the picture.
@@ -105,9 +121,11 @@ struct View {
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y
 // (shaders/shared/position.glsl). surface: terrain gradient, distance along the pixel's ray. Without coverage,
 // texels may have been gathered from anywhere in the picture: what they show follows from these two alone.
+// `lens`: the share of each pixel that is inside the lens, and whether its centre is; null without one.
 struct GBufferView {
     const gl::Texture2D* position = nullptr;
     const gl::Texture2D* surface = nullptr;
+    const gl::Texture2D* lens = nullptr;
 };
 
 struct UpdateReport {
@@ -128,7 +146,10 @@ public:
     // or a shader astray.
     virtual std::unique_ptr<const Prepared> open(const ArchiveReader& archive, const std::string& prefix,
                                                  const MemoryAccount& memory) const = 0;
-    virtual void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) = 0;
+    // `lens`: what is seen inside the lens, `prepared` with other looks; null without one. A later call replaces
+    // both, and uploads only what they do not share with those before. After an error nothing is uploaded.
+    virtual void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
+                        const MemoryAccount& memory) = 0;
     virtual UpdateReport update(const View& view) = 0;
     // Whether `draw` needs a depth attachment for itself, with whatever values.
     virtual bool needs_depth(const View&) const { return false; }

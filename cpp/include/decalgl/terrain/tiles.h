@@ -5,8 +5,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
+#include "decalgl/core/shared_array.h"
 #include "decalgl/terrain/heightfield.h"
 
 namespace decalgl {
@@ -27,7 +27,7 @@ struct TerrainTiles {
     int32_t columns = 0;
     int32_t rows = 0;
     bool has_holes = false;
-    std::vector<TerrainTile> tiles;  // row by row; lowest > highest marks one without a triangle
+    SharedArray<TerrainTile> tiles;  // row by row; lowest > highest marks one without a triangle
 
     static TerrainTiles over(const Heightfield& heightfield, unsigned threads);
 };

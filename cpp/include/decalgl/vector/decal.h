@@ -56,7 +56,11 @@ struct DecalView {
     double widest_half_width() const;
 };
 
+// Whether decals of features that are fully transparent are there, for a later restyle to show.
+enum class Hidden { left_out, kept };
+
 // The decals that show anything, from bottom to top. Layers are counted from `first_layer`.
-std::vector<Decal> decals_of(Span<const Layer> layers, uint32_t first_layer);
+std::vector<Decal> decals_of(Span<const Layer> layers, uint32_t first_layer,
+                             Hidden hidden = Hidden::left_out);
 
 }  // namespace decalgl

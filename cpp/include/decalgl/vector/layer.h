@@ -33,5 +33,8 @@ struct Layer {
 
 // Throws Error(input) that names the layer, the feature and the cure.
 void validate(const Layer& layer);
+// Empty, or each of the features once. Throws Error(input).
+void validate_draw_order(const std::vector<int64_t>& draw_order, size_t features,
+                         const std::string& layer_name);
 
 }  // namespace decalgl

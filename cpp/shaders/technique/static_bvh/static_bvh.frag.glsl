@@ -13,6 +13,33 @@
 // SAMPLE         one of the 32 points of the pixel's area, else its centre
 // THOENY         lines by how much of the pixel they cover
 // IDS            writes 1 + slot of the topmost feature at the centre, nothing where there is none
+
+// Some flags mean others, and some nothing beside others.
+#if (defined(INSET) || defined(OFFSET)) && !defined(BOTH)
+#define BOTH
+#endif
+#if defined(RINGS) && !defined(BOTH)
+#undef CORNERS
+#undef PATTERNS
+#undef BANDS
+#undef SLOPES
+#undef UNSORTED
+#undef NEAREST
+#undef THOENY
+#elif !defined(CORNERS) && (defined(PATTERNS) || defined(BANDS) || defined(SLOPES))
+#define CORNERS
+#endif
+#if defined(THOENY) && (defined(BOTH) || defined(IDS) || defined(SAMPLE))
+#undef THOENY
+#endif
+#if defined(BOTH)
+#undef RINGS
+#undef UNSORTED
+#undef NEAREST
+#endif
+#if defined(IDS)
+#undef SAMPLE
+#endif
 #include "shared/ray.glsl"
 #include "technique/static_bvh/tree.glsl"
 #if defined(RINGS) || defined(BOTH)

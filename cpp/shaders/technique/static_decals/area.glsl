@@ -60,7 +60,8 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     group.style = style_of(group.slot, half_width_of(group.slot));
     group.style.half_width *= width_factor(group.style);
     group.metric = metric_of(group.style);
-    group.pen = lifted_pen;
+    group.pen = group.pen_before = lifted_pen;
+    group.run = 0.0;
     group.last = vec2(-1.0);
     scale = group.line ? group.style.scale : 1.0;
     group.half_width = group.style.half_width;
@@ -94,7 +95,12 @@ uint alike_in_stroke(Group group, vec2 from, vec2 to) {
     return apart + group.reach <= group.half_width ? all_samples : for_each;
 }
 
-#ifdef STYLES
+// Whether strokes may have parts other than bars with discs at their ends, or need to know how far each sample is.
+#if defined(JOINED) || defined(BANDS)
+#define PARTS
+#endif
+
+#ifdef PARTS
 // How far a mitred corner reaches, in half widths.
 float longest_reach(Style style) {
     return has(style, STYLE_MITER) ? inversesqrt(max(0.5 * (1.0 + style.miter_turn), 1e-4)) : 1.0;
@@ -227,7 +233,7 @@ uint read_point(inout Group group, uint word) {
 #endif
     group.before = starts_edge(word) ? to : group.from;
     group.from = to;
-#ifdef STYLES
+#ifdef PARTS
     if (group.line) return next_alike(group, word, group.before, to);
 #else
     if (group.line) return alike_in_stroke(group, group.before, to);
@@ -286,7 +292,7 @@ void add_group(inout Samples samples, inout uint open, Group group, Cell cell, v
     uint mask = group.covered & open;
     open = all_samples;
     if (!group.line) mask &= shown_samples(group, cell, local, foot);
-    if (mask == 0u) return;
+    if (mask == 0u || !is_shown(group.slot)) return;
     vec4 straight = color_of(group.slot);
 #ifdef BANDS
     if (has(group.style, STYLE_BANDS)) {
@@ -328,7 +334,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
 #ifdef STYLES
                 add_group(samples, open, group, cell, local, foot);
 #else
-                if (group.covered != 0u) add_layer(samples, group.covered, color_of(group.slot));
+                if (group.covered != 0u && is_shown(group.slot)) add_layer(samples, group.covered, color_of(group.slot));
 #endif
                 group = group_of(word, bias, local, foot);
                 ended = word == LIST_END || samples.open == 0u;
@@ -338,7 +344,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
-#ifdef STYLES
+#ifdef PARTS
             if (group.line) group.covered |= styled_mask(group, group.before, group.from);
 #else
             if (group.line) group.covered |= stroke_mask(group, group.before, group.from);

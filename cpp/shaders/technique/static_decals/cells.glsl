@@ -2,19 +2,15 @@
 #include "shared/view_block.h"
 #include "shared/position.glsl"
 #include "technique/static_decals/cell_lists.h"
+#include "technique/static_decals/looks.glsl"
 
 uniform usamplerBuffer bucket_entries;
 uniform usamplerBuffer cell_entries;
-uniform usamplerBuffer decal_styles;  // colour bytes, half width in quanta
 uniform ivec2 grid_size;              // in buckets
 uniform int block_shift;              // a block of the position grid is 2^block_shift quanta
 uniform ivec2 first_quantum;          // of the grid, counted from the position grid's origin, modulo 2^32
 uniform ivec2 first_block;            // the same in blocks, where a block is less than a quantum
 uniform float quanta_per_metre;
-#ifdef ONE_WIDTH
-uniform float line_scale;       // units per quantum
-uniform float line_half_width;  // in units
-#endif
 
 // A place on the lattice, counted from the grid's lower left corner.
 struct LatticePosition {
@@ -79,29 +75,4 @@ bool is_line(uint header) {
 #else
     return false;
 #endif
-}
-
-// Quanta.
-float half_width_of(uint slot) {
-    return uintBitsToFloat(texelFetch(decal_styles, int(slot)).g);
-}
-
-// Units per quantum, and the half width in units, of a plain line.
-#if defined(LINES) && !defined(STYLES)
-vec2 stroke_of(uint header) {
-#ifdef ONE_WIDTH
-    return vec2(line_scale, line_half_width);
-#else
-    float half_width = half_width_of(header & SLOT_MASK);
-    int exponent;
-    frexp(half_width * (1.0 / float(MAX_RADIUS)), exponent);
-    float scale = exp2(-float(max(exponent, 0)));
-    return vec2(scale, half_width * scale);
-#endif
-}
-#endif
-
-// Straight alpha.
-vec4 color_of(uint slot) {
-    return unpackUnorm4x8(texelFetch(decal_styles, int(slot)).r);
 }

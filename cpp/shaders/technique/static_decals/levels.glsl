@@ -3,6 +3,9 @@
 // The pixel's parallelogram is covered by taps, each a bilinear mean around it, on the level at which the pixel is
 // FEWEST_TEXELS to twice as many texels wide.
 uniform sampler2D levels;
+#ifdef LENS
+uniform sampler2D lens_levels;
+#endif
 
 const float most_taps = 12.0;  // along a pixel's longer side
 const float texels_per_tap = 1.5;
@@ -17,6 +20,13 @@ bool spans_texels(mat2 foot) {
     return min(sides.x, sides.y) >= float(FEWEST_TEXELS);
 }
 
+vec4 level_at(vec2 place, float level) {
+#ifdef LENS
+    if (first_style != 0) return textureLod(lens_levels, place, level);
+#endif
+    return textureLod(levels, place, level);
+}
+
 vec4 mean_of_levels(LatticePosition centre, mat2 foot) {
     vec2 sides = sides_in_texels(foot);
     float wanted = max(min(sides.x, sides.y) / float(FEWEST_TEXELS), max(sides.x, sides.y) / most_taps);
@@ -28,7 +38,7 @@ vec4 mean_of_levels(LatticePosition centre, mat2 foot) {
     int tap = 0;
     do {
         vec2 place = (vec2(tap % taps.x, tap / taps.x) + 0.5) / vec2(taps) - 0.5;
-        sum += textureLod(levels, at + foot * place * per_quantum, level);
+        sum += level_at(at + foot * place * per_quantum, level);
     } while (++tap < taps.x * taps.y);
     return sum / float(taps.x * taps.y);
 }

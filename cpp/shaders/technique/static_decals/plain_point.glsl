@@ -61,7 +61,7 @@ bool is_settled(Walk walk) {
 #if defined(FINDS_COLORS)
     return walk.found.a >= 0.999;
 #elif defined(FINDS_ANY)
-    return walk.found || walk.covered;
+    return walk.found || walk.covered;  // with one colour, all is shown
 #else
     return walk.found != no_slot;
 #endif
@@ -76,7 +76,7 @@ void end_group(inout Walk walk, bool ends) {
 #elif defined(FINDS_ANY)
     walk.found = walk.found || (ends && walk.covered);
 #else
-    walk.found = ends && walk.covered && walk.found == no_slot ? walk.slot : walk.found;
+    walk.found = ends && walk.covered && walk.found == no_slot && is_shown(walk.slot) ? walk.slot : walk.found;
 #endif
 }
 

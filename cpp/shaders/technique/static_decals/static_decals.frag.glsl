@@ -10,6 +10,8 @@
 // THOENY         of CELLS, in place of samples: strokes by their estimated coverage
 // STYLES         some decal is more than a plain stroke or an even fill: of what it can be, JOINED, PATTERNS, BANDS,
 //                HATCHES, SLOPES
+// HIDDEN         some feature is not shown, and no colour is translucent
+// LENS           some pixels are seen through the lens, where features look otherwise
 // IDS            writes 1 + slot of the topmost feature at the centre instead of a colour
 #if !defined(STYLES) && (defined(THOENY) || defined(JOINED) || defined(PATTERNS) || defined(BANDS) || defined(HATCHES) || defined(SLOPES))
 #define STYLES
@@ -40,6 +42,44 @@ layout(early_fragment_tests) in;
 #endif
 #endif
 
+#ifndef IDS
+// Premultiplied. `kind`: the lowest class that was found.
+vec4 seen_color(LatticePosition position, mat2 foot, inout float kind) {
+#if defined(CLASSES)
+    Classed result = classed(position, foot);
+    kind = min(kind, result.kind);
+    return result.color;
+#elif defined(THOENY)
+    return composite_thoeny(position, foot);
+#elif defined(CELLS)
+    return composite_cells(position, foot);
+#elif defined(POINTS)
+    return composite_points(position, foot);
+#elif defined(FROM_LEVELS)
+    return mean_of_levels(position, foot);
+#else
+    return color_at(position);
+#endif
+}
+
+#ifdef LENS
+// What is seen outside the lens, inside, or a share of both.
+vec4 color_through_lens(LatticePosition position, mat2 foot, inout float kind, float inside) {
+    vec4 sum = vec4(0.0);
+    bool within = inside > 0.0;
+    bool both = within && inside < 1.0;
+    bool again;
+    do {
+        first_style = within ? lens_styles : 0;
+        sum += (within ? inside : 1.0 - inside) * seen_color(position, foot, kind);
+        again = both && within;
+        within = false;
+    } while (again);
+    return sum;
+}
+#endif
+#endif
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Position seen = unpack_position(texelFetch(position_texture, pixel, 0));
@@ -47,26 +87,31 @@ void main() {
 #ifdef SLOPES
     set_slope(texelFetch(surface_texture, pixel, 0).xy);
 #endif
+#ifdef LENS
+    vec2 lens = texelFetch(lens_texture, pixel, 0).rg;
+#endif
 #ifdef IDS
+#ifdef LENS
+    first_style = lens.g > 0.5 ? lens_styles : 0;
+#endif
     id = walk_at(position).found + 1u;  // no slot, plus one, is 0
-#elif defined(AREA)
+#else
+    float kind = 1.0;
+    mat2 foot = mat2(0.0);
+#ifdef AREA
     vec4 surface = texelFetch(surface_texture, pixel, 0);
     // Sky has no surface: a pixel of no size, outside every grid, is done with at once.
-    mat2 foot = is_sky(seen) ? mat2(0.0) : footprint(pixel_from_centre(), surface.xy, surface.z) * quanta_per_metre;
-#if defined(CLASSES)
-    Classed result = classed(position, foot);
-    color = result.color;
-    gl_FragDepth = result.kind;
-#elif defined(THOENY)
-    color = composite_thoeny(position, foot);
-#elif defined(CELLS)
-    color = composite_cells(position, foot);
-#elif defined(POINTS)
-    color = composite_points(position, foot);
-#else
-    color = mean_of_levels(position, foot);
+    if (!is_sky(seen)) foot = footprint(pixel_from_centre(), surface.xy, surface.z) * quanta_per_metre;
 #endif
+#if defined(LENS) && defined(AREA)
+    color = color_through_lens(position, foot, kind, lens.r);
+#elif defined(LENS)
+    color = color_through_lens(position, foot, kind, lens.g);
 #else
-    color = color_at(position);
+    color = seen_color(position, foot, kind);
+#endif
+#ifdef CLASSES
+    gl_FragDepth = kind;
+#endif
 #endif
 }

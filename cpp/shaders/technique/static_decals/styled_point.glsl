@@ -67,7 +67,7 @@ void end_group(inout Walk walk) {
         walk.open = covered;
         return;
     }
-    covered = covered && walk.open && (walk.line || fill_shows(walk.style, walk.bucket, walk.inside));
+    covered = covered && walk.open && is_shown(walk.slot) && (walk.line || fill_shows(walk.style, walk.bucket, walk.inside));
     walk.open = true;
     if (!covered || is_settled(walk)) return;
 #if defined(FINDS_COLORS)

@@ -139,6 +139,12 @@ public:
     std::vector<FeatureReference> query(double x, double y) const override;
     // Throws Error(unsupported): the structures are there to be compared with.
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
+    bool shows_anything() const override { return true; }
+    // Throws Error(unsupported) too.
+    LayerLook look_of(uint32_t layer, size_t features) const override;
+    std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
+    std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
+                                             const MemoryAccount& memory) const override;
 
     Lattice lattice;
     BvhOptions options;

@@ -30,10 +30,29 @@ bool by_coverage(const View& view, const bvh::DecalGroup& group) {
                 "index 'bvh' is not kept on disk; prepare the scene with index 'grid'");
 }
 
+[[noreturn]] void refuse_changes() {
+    throw Error(
+        ErrorKind::unsupported,
+        "index 'bvh' stays as it was prepared; prepare the scene with index 'grid' to restyle or edit it");
+}
+
 }  // namespace
 
 void bvh::PreparedBvh::save(ArchiveWriter&, const std::string&) const {
     refuse_files();
+}
+
+std::shared_ptr<const Prepared> bvh::PreparedBvh::restyled(Span<const LayerLook>,
+                                                           const MemoryAccount&) const {
+    refuse_changes();
+}
+
+LayerLook bvh::PreparedBvh::look_of(uint32_t, size_t) const {
+    refuse_changes();
+}
+
+std::shared_ptr<const Prepared> bvh::PreparedBvh::edited(const LayerEdit&, const MemoryAccount&) const {
+    refuse_changes();
 }
 
 std::unique_ptr<const Prepared> StaticBvh::open(const ArchiveReader&, const std::string&,
@@ -45,7 +64,8 @@ std::unique_ptr<const Prepared> StaticBvh::preprocess(const TechniqueInput& inpu
     return bvh::build_bvh(input, progress);
 }
 
-void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
+void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
+                       const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const bvh::PreparedBvh>(std::move(prepared));
     buffers_.clear();
     for (const bvh::DecalGroup& group : prepared_->groups) {

@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
+#include "core/growing_array.h"
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 #include "technique/static_decals/bucket_builder.h"
+#include "technique/static_decals/layer_sources.h"
+#include "technique/static_decals/local_build.h"
 #include "technique/static_decals/prepared_decals.h"
 #include "technique/static_decals/resolution.h"
 
@@ -43,45 +45,58 @@ void require_addressable(const TechniqueInput& input, size_t slots) {
                                            " features in one scene; draw a smaller part of the map at once");
 }
 
+std::vector<LayerRules> rules_of(const TechniqueInput& input) {
+    std::vector<LayerRules> rules(input.first_layer, LayerRules{0.0, 0.0, 0.5, 0});
+    for (const Layer& layer : input.layers)
+        rules.push_back({layer.stroke.widest, layer.casing.widest,
+                         layer.outline_mode == OutlineMode::normal ? 0.5 : 1.0,
+                         layer.outline_order == OutlineOrder::feature ? uint64_t{1} : uint64_t{0}});
+    return rules;
+}
+
+// By layers alone, so that a part of a scene has what the whole has.
+bool cuts_outlines(const TechniqueInput& input) {
+    return std::any_of(input.layers.begin(), input.layers.end(), [](const Layer& layer) {
+        return layer.features.kind == FeatureKind::polygons && !layer.stroke.empty() &&
+               layer.outline_mode != OutlineMode::normal;
+    });
+}
+
+DecalStyle style_of(const DecalView& view, const BucketGrid& grid) {
+    const uint8_t* color = view.color();
+    DecalStyle style{{color[0], color[1], color[2], color[3]},
+                     static_cast<float>(view.half_width() / grid.quantum)};
+    if (view.decal.is_stroke() && style.half_width <= 0.0F)
+        style.color[3] = 0;
+    return style;
+}
+
 void collect_slots(const TechniqueInput& input, PreparedDecals& decals, std::vector<DecalShape>& shapes) {
     std::vector<Decal> slots = slots_of(input);
     require_addressable(input, slots.size());
     const StyleTable table(input, decals.grid);
     std::vector<DecalStyle> styles;
-    std::optional<std::array<uint8_t, 4>> first_color;
+    std::vector<uint32_t> kinds;
     for (const Decal& slot : slots) {
         const DecalView view = table.view(slot);
-        const DecalShape shape = table.shape_of(slot);
-        shapes.push_back(shape);
-        styles.push_back({});
+        shapes.push_back(table.shape_of(slot));
+        styles.push_back(shapes.back().is_clip ? DecalStyle{} : style_of(view, decals.grid));
+        kinds.push_back(table.kind_of(slot, shapes.back()));
         (slot.is_stroke() ? decals.has_lines : decals.has_polygons) = true;
-        decals.has_clips |= shape.is_clip;
-        if (shape.is_clip)
-            continue;
-        const uint8_t* color = view.color();
-        styles.back() = {{color[0], color[1], color[2], color[3]},
-                         static_cast<float>(view.half_width() / decals.grid.quantum)};
-        if (slot.is_stroke()) {
-            const float half_width = styles.back().half_width;
-            decals.narrowest = decals.widest == 0.0F ? half_width : std::min(decals.narrowest, half_width);
-            decals.widest = std::max(decals.widest, half_width);
-            decals.largest_scale = std::max(decals.largest_scale, int{shape.scale});
-        }
-        decals.has_one_color &= styles.back().color == first_color.value_or(styles.back().color);
-        first_color = first_color.value_or(styles.back().color);
-        decals.segments += segments_of(view.layer->features, view.feature());
-        decals.has_translucency |= color[3] != 255;
+        decals.largest_scale = std::max(decals.largest_scale, int{shapes.back().scale});
+        if (!shapes.back().is_clip)
+            decals.segments += segments_of(view.layer->features, view.feature());
     }
     decals.style_flags = table.flags();
-    if (table.flags() != 0 || decals.has_clips) {
-        std::vector<uint32_t> kinds;
-        for (size_t i = 0; i < slots.size(); ++i)
-            kinds.push_back(table.kind_of(slots[i], shapes[i]));
+    decals.has_clips = cuts_outlines(input);
+    if (decals.style_flags != 0 || decals.has_clips) {
         decals.kinds = std::move(kinds);
         decals.style_records = table.texels();
     }
     decals.slots = std::move(slots);
     decals.styles = std::move(styles);
+    decals.rules = rules_of(input);
+    decals.summarise_styles();
 }
 
 bool has_pattern(const Stroke& stroke) {
@@ -197,6 +212,18 @@ void place_chunk(const CellChunk& chunk, const ChunkPlace& place, size_t first_b
               index.words.begin() + static_cast<std::ptrdiff_t>(4 * place.first_texel));
 }
 
+// Arrays are counted for as long as some index holds them.
+void charge_arrays(const MemoryAccount& memory, PreparedDecals& decals) {
+    const std::string name = "static: prepared";
+    decals.bucket_entries = charged(decals.bucket_entries, memory, name);
+    decals.cells = charged(decals.cells, memory, name);
+    decals.words = charged(decals.words, memory, name);
+    decals.styles = charged(decals.styles, memory, name);
+    decals.kinds = charged(decals.kinds, memory, name);
+    decals.style_records = charged(decals.style_records, memory, name);
+    decals.slots = charged(decals.slots, memory, name);
+}
+
 void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& charges,
                  const TechniqueInput& input, PreparedDecals& decals) {
     std::vector<ChunkPlace> places;
@@ -214,7 +241,7 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
                            decals.style_records.size_bytes();
     if (end.first_texel > most_texels || end.first_cell > most_cells)
         refuse_size(bytes);
-    decals.charge.resize(bytes);
+    MemoryCharge charge(input.memory, "static: prepared", bytes);
     IndexArrays index;
     index.bucket_entries.resize(decals.grid.bucket_count());
     index.cells.resize(end.first_cell);
@@ -230,13 +257,14 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
     decals.bucket_entries = std::move(index.bucket_entries);
     decals.cells = std::move(index.cells);
     decals.words = std::move(index.words);
+    charge = MemoryCharge();
+    charge_arrays(input.memory, decals);
 }
 
 }  // namespace
 
 std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progress& progress) {
     auto decals = std::make_unique<PreparedDecals>();
-    decals->charge = MemoryCharge(input.memory, "static: prepared", 0);
     decals->grid = BucketGrid::over(input.bounds, input.positions, choose_resolution(input));
     std::vector<DecalShape> shapes;
     collect_slots(input, *decals, shapes);
@@ -248,14 +276,50 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
     references.clear();
     reference_charges.clear();
     join_chunks(chunks, chunk_charges, input, *decals);
+    decals->sources = std::make_shared<const LayerSources>(input);
+    decals->look_token = std::make_shared<const LookToken>();
     progress.report(1.0);
     return decals;
+}
+
+std::vector<uint32_t> touched_buckets(const TechniqueInput& input, const BucketGrid& grid) {
+    PreparedDecals decals;
+    decals.grid = grid;
+    std::vector<DecalShape> shapes;
+    collect_slots(input, decals, shapes);
+    const std::vector<std::vector<double>> arcs(input.layers.size());
+    const OrderedFeatures features{&input, &decals.grid, decals.slots, shapes, arcs};
+    std::vector<MemoryCharge> charges;
+    Progress progress;
+    std::vector<uint32_t> buckets;
+    for (BucketReferences& run : make_all_references(features, charges, progress))
+        for (const BucketReference& reference : run.references())
+            buckets.push_back(reference.bucket);
+    std::sort(buckets.begin(), buckets.end());
+    buckets.erase(std::unique(buckets.begin(), buckets.end()), buckets.end());
+    return buckets;
+}
+
+LocalBuild build_buckets(const TechniqueInput& input, const BucketGrid& grid, Span<const uint32_t> buckets) {
+    LocalBuild build;
+    build.decals.grid = grid;
+    std::vector<DecalShape> shapes;
+    collect_slots(input, build.decals, shapes);
+    const std::vector<std::vector<double>> arcs = measure_arcs(input);
+    const OrderedFeatures features{&input, &build.decals.grid, build.decals.slots, shapes, arcs};
+    std::vector<MemoryCharge> charges;
+    Progress progress;
+    const std::vector<BucketReferences> references = make_all_references(features, charges, progress);
+    BucketBuilder builder(features);
+    for (const uint32_t bucket : buckets)
+        builder.build(bucket, references, build.chunk);
+    return build;
 }
 
 PreparedCounts PreparedDecals::counts() const {
     const size_t bytes = bucket_entries.size_bytes() + cells.size_bytes() + words.size_bytes() +
                          styles.size_bytes() + slots.size_bytes() + kinds.size_bytes() +
-                         style_records.size_bytes();
+                         style_records.size_bytes() + ranks.size_bytes();
     return {slots.size(), segments, pieces, bytes, std::ldexp(grid.quantum, largest_scale)};
 }
 

@@ -25,16 +25,12 @@ struct DecalRecord {
     int32_t rows;
     uint32_t longest_list;
     int32_t largest_scale;
-    float widest;
-    float narrowest;
     uint32_t has_polygons;
     uint32_t has_lines;
-    uint32_t has_one_color;
-    uint32_t has_translucency;
     uint32_t style_flags;
     uint32_t has_clips;
 };
-static_assert(sizeof(DecalRecord) == 128, "saved as it is");
+static_assert(sizeof(DecalRecord) == 112, "saved as it is");
 
 constexpr size_t block_items = 1 << 18;
 constexpr int64_t farthest_bucket = int64_t{1} << 31;
@@ -42,25 +38,10 @@ constexpr int largest_scale_there_is = 64;
 
 DecalRecord record_of(const PreparedDecals& decals) {
     const BucketGrid& grid = decals.grid;
-    return {grid.positions,
-            grid.bucket_size,
-            grid.quantum,
-            grid.first_bucket_x,
-            grid.first_bucket_y,
-            decals.segments,
-            decals.pieces,
-            grid.columns,
-            grid.rows,
-            decals.longest_list,
-            decals.largest_scale,
-            decals.widest,
-            decals.narrowest,
-            decals.has_polygons,
-            decals.has_lines,
-            decals.has_one_color,
-            decals.has_translucency,
-            decals.style_flags,
-            decals.has_clips};
+    return {grid.positions,      grid.bucket_size,    grid.quantum,         grid.first_bucket_x,
+            grid.first_bucket_y, decals.segments,     decals.pieces,        grid.columns,
+            grid.rows,           decals.longest_list, decals.largest_scale, decals.has_polygons,
+            decals.has_lines,    decals.style_flags,  decals.has_clips};
 }
 
 void restore(const DecalRecord& record, PreparedDecals& decals) {
@@ -70,12 +51,8 @@ void restore(const DecalRecord& record, PreparedDecals& decals) {
     decals.pieces = record.pieces;
     decals.longest_list = record.longest_list;
     decals.largest_scale = record.largest_scale;
-    decals.widest = record.widest;
-    decals.narrowest = record.narrowest;
     decals.has_polygons = record.has_polygons != 0;
     decals.has_lines = record.has_lines != 0;
-    decals.has_one_color = record.has_one_color != 0;
-    decals.has_translucency = record.has_translucency != 0;
     decals.style_flags = record.style_flags;
     decals.has_clips = record.has_clips != 0;
 }
@@ -113,7 +90,7 @@ bool are_lists(const PreparedDecals& decals) {
         bool all = true;
         for (size_t i = begin; i < end; ++i) {
             const uint32_t level = decals.bucket_entries[i] & ((1U << LEVEL_BITS) - 1);
-            all &= level <= FINEST_LEVEL;
+            all &= level == 0 || (COARSEST_LEVEL <= level && level <= FINEST_LEVEL);
             all &= (decals.bucket_entries[i] >> LEVEL_BITS) + (size_t{1} << (2 * level)) <= cells;
         }
         return all;
@@ -126,6 +103,25 @@ bool are_lists(const PreparedDecals& decals) {
     };
     return decals.words.size() % 4 == 0 && texels > 0 && decals.words[3] == LIST_END &&
            all_blocks(decals.bucket_entries.size(), has_cells) && all_blocks(cells, has_texels);
+}
+
+// Whether each rank is there once.
+bool are_ranks(Span<const uint32_t> ranks) {
+    std::vector<bool> seen(ranks.size(), false);
+    for (const uint32_t rank : ranks) {
+        if (rank >= ranks.size() || seen[rank])
+            return false;
+        seen[rank] = true;
+    }
+    return true;
+}
+
+// Arrays of slots are as long as they are many.
+bool are_of_slots(const PreparedDecals& decals) {
+    const size_t count = decals.slots.size();
+    const auto fits = [&](size_t size) { return size == 0 || size == count; };
+    return count > 0 && decals.styles.size() == count && fits(decals.kinds.size()) &&
+           fits(decals.ranks.size()) && are_ranks(decals.ranks);
 }
 
 bool name_slots(const PreparedDecals& decals) {
@@ -163,6 +159,8 @@ void PreparedDecals::save(ArchiveWriter& archive, const std::string& prefix) con
     archive.add(prefix + "styles", styles.span());
     archive.add(prefix + "kinds", kinds.span());
     archive.add(prefix + "style_records", style_records.span());
+    archive.add(prefix + "ranks", ranks.span());
+    archive.add(prefix + "rules", rules.span());
     archive.add(prefix + "slots", slots.span());
 }
 
@@ -176,14 +174,16 @@ std::unique_ptr<PreparedDecals> open_decals(const ArchiveReader& archive, const 
     decals->slots = archive.array<Decal>(prefix + "slots");
     decals->kinds = archive.array<uint32_t>(prefix + "kinds");
     decals->style_records = archive.array<StyleTexel>(prefix + "style_records");
+    decals->ranks = archive.array<uint32_t>(prefix + "ranks");
+    decals->rules = archive.array<LayerRules>(prefix + "rules");
     const bool has_scale = decals->largest_scale >= 0 && decals->largest_scale <= largest_scale_there_is;
     if (!has_scale || !is_grid(decals->grid, decals->bucket_entries.size()))
         archive.refuse("the grid of the static index makes no sense");
-    if (decals->slots.empty() || decals->styles.size() != decals->slots.size() || !are_lists(*decals) ||
-        !name_slots(*decals))
+    if (!are_of_slots(*decals) || !are_lists(*decals) || !name_slots(*decals))
         archive.refuse("the cells of the static index do not fit together");
     if (!are_kinds(*decals))
         archive.refuse("the styles of the static index do not fit together");
+    decals->summarise_styles();
     return decals;
 }
 

@@ -102,26 +102,40 @@ void draw_bucket(const PreparedDecals& decals, uint32_t bucket, BucketTexels& te
     }
 }
 
-void place_bucket(const BucketTexels& texels, const BucketGrid& grid, uint32_t bucket, LevelRaster& raster) {
+// One row of texels as bytes.
+void write_row(const BucketTexels& texels, size_t y, uint8_t* target) {
     const auto byte = [](float value) {
         return static_cast<uint8_t>(std::lrint(std::clamp(value, 0.0F, 255.0F)));
     };
+    for (size_t x = 0; x < LEVEL_TEXELS; ++x, target += 4) {
+        const Color& texel = texels[y * LEVEL_TEXELS + x];
+        target[0] = byte(texel.r);
+        target[1] = byte(texel.g);
+        target[2] = byte(texel.b);
+        target[3] = byte(255.0F * texel.a);
+    }
+}
+
+void place_bucket(const BucketTexels& texels, const BucketGrid& grid, uint32_t bucket, LevelRaster& raster) {
     const auto columns = static_cast<uint32_t>(grid.columns);
     for (size_t y = 0; y < LEVEL_TEXELS; ++y) {
         const size_t row = size_t{bucket / columns} * LEVEL_TEXELS + y;
-        uint8_t* target = &raster.texels[4 * (row * static_cast<size_t>(raster.width) +
-                                              size_t{bucket % columns} * LEVEL_TEXELS)];
-        for (size_t x = 0; x < LEVEL_TEXELS; ++x, target += 4) {
-            const Color& texel = texels[y * LEVEL_TEXELS + x];
-            target[0] = byte(texel.r);
-            target[1] = byte(texel.g);
-            target[2] = byte(texel.b);
-            target[3] = byte(255.0F * texel.a);
-        }
+        write_row(texels, y,
+                  &raster.texels[4 * (row * static_cast<size_t>(raster.width) +
+                                      size_t{bucket % columns} * LEVEL_TEXELS)]);
     }
 }
 
 }  // namespace
+
+std::vector<uint8_t> draw_level_of_bucket(const PreparedDecals& decals, uint32_t bucket) {
+    BucketTexels texels;
+    draw_bucket(decals, bucket, texels);
+    std::vector<uint8_t> bytes(size_t{4} * LEVEL_TEXELS * LEVEL_TEXELS);
+    for (size_t y = 0; y < LEVEL_TEXELS; ++y)
+        write_row(texels, y, &bytes[4 * y * LEVEL_TEXELS]);
+    return bytes;
+}
 
 LevelRaster draw_finest_level(const PreparedDecals& decals) {
     LevelRaster raster;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "decalgl/core/large_array.h"
 #include "technique/static_decals/prepared_decals.h"
@@ -21,5 +22,7 @@ struct LevelRaster {
 
 // On all cores; the same bytes on any number of them.
 LevelRaster draw_finest_level(const PreparedDecals& decals);
+// The part of it that lies in one bucket, LEVEL_TEXELS a side.
+std::vector<uint8_t> draw_level_of_bucket(const PreparedDecals& decals, uint32_t bucket);
 
 }  // namespace decalgl

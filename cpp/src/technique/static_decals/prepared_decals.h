@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/growing_array.h"
 #include "decalgl/core/shared_array.h"
 #include "decalgl/technique/technique.h"
 #include "technique/static_decals/bucket_grid.h"
@@ -20,6 +21,19 @@ struct DecalStyle {
 };
 static_assert(sizeof(DecalStyle) == 8, "read as one RG32UI texel");
 
+// What restyling a layer has to know of it. Without padding, since it goes into files.
+struct LayerRules {
+    double stroke_widest;  // metres; 0: widths are fixed
+    double casing_widest;
+    double half_width_per_width;   // 1 where an outline lies on one side of its border alone, else 0.5
+    uint64_t outlines_by_feature;  // whether each outline lies over its own fill, else over all
+};
+static_assert(sizeof(LayerRules) == 32, "saved as it is");
+
+class LayerSources;
+
+struct LookToken {};
+
 class PreparedDecals : public Prepared {
 public:
     PreparedCounts counts() const override;
@@ -27,6 +41,21 @@ public:
     std::vector<FeatureReference> query(double x, double y) const override;
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
+    bool shows_anything() const override { return has_shown; }
+    LayerLook look_of(uint32_t layer, size_t features) const override;
+    std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
+                                             const MemoryAccount& memory) const override;
+
+    std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
+
+    // Works out what styles have in common, from `widest` to `one_color`.
+    void summarise_styles();
+    // A line's words are in units of 2^scale quanta.
+    int scale_of(uint32_t slot) const {
+        return kinds.empty() ? line_scale(styles[slot].half_width)
+                             : static_cast<int>(kinds[slot] & SCALE_MASK);
+    }
+    uint32_t rank_of(uint32_t slot) const { return ranks.empty() ? slot : ranks[slot]; }
     // The words of a cell, to LIST_END or their end.
     Span<const uint32_t> list(uint32_t cell_entry) const;
 
@@ -36,22 +65,33 @@ public:
     SharedArray<uint32_t> cells;
     SharedArray<uint32_t> words;
     SharedArray<DecalStyle> styles;
-    SharedArray<Decal> slots;     // topmost first
     SharedArray<uint32_t> kinds;  // of each slot, as style_records.h says; empty where all are plain
     SharedArray<StyleTexel> style_records;
+    SharedArray<Decal> slots;     // as prepared, topmost first
+    SharedArray<uint32_t> ranks;  // of each slot in draw order, topmost 0, where it is another; else empty
+    SharedArray<LayerRules> rules;  // by the layer's place in the scene
     uint64_t segments = 0;
     uint64_t pieces = 0;
     uint32_t longest_list = 0;  // words
     int largest_scale = 0;
+    uint32_t style_flags = 0;  // of all style records, and STYLE_WIDENED
+    bool has_clips = false;
     float widest = 0.0F;  // half widths of lines, in quanta
     float narrowest = 0.0F;
-    uint32_t style_flags = 0;  // of all style records
-    bool has_clips = false;
     bool has_polygons = false;
     bool has_lines = false;
-    bool has_one_color = true;
+    bool has_one_color = true;  // of what is shown
     bool has_translucency = false;
-    MemoryCharge charge;  // of the arrays, but for those in a mapped file
+    bool has_hidden = false;  // decals of alpha 0
+    bool has_shown = false;   // any others
+    std::array<uint8_t, 4> one_color{};
+    // What edits need: null, and so refused, for an index that was opened from a file.
+    std::shared_ptr<const LayerSources> sources;
+    GrowingArray<uint32_t> growing_cells;  // cells and words, once edits have added to them
+    GrowingArray<uint32_t> growing_words;
+    uint64_t unused_words = 0;  // of lists that edits have replaced
+    // Where two indexes share it, buckets with the same entry look the same in both.
+    std::shared_ptr<const LookToken> look_token;
 };
 
 // Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).

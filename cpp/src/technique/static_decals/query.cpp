@@ -44,7 +44,8 @@ std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
         return found;
     ListReader(*this, cell).read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares) {
         const FeatureReference feature = slots[slot].feature;
-        if (shares[0] <= 1.0 && std::find(found.begin(), found.end(), feature) == found.end())
+        if (shares[0] <= 1.0 && styles[slot].color[3] != 0 &&
+            std::find(found.begin(), found.end(), feature) == found.end())
             found.push_back(feature);
     });
     return found;

@@ -32,11 +32,28 @@ void set_grid(const BucketGrid& grid, gl::Program& program) {
     program.set("quanta_per_metre", static_cast<float>(1.0 / grid.quantum));
 }
 
+// Arrays are written once, so those at one place hold the same.
+template <typename T>
+bool is_same(const SharedArray<T>& a, const SharedArray<T>& b) {
+    return a.data() == b.data() && a.size() == b.size();
+}
+
+gl::Texture2D make_levels(const PreparedDecals& decals, const MemoryAccount& memory) {
+    const LevelRaster finest = draw_finest_level(decals);
+    const int count = 1 + static_cast<int>(std::log2(std::max(finest.width, finest.height)));
+    gl::Texture2D levels =
+        gl::Texture2D::create(memory, "static: levels", GL_RGBA8, finest.width, finest.height, count);
+    levels.update(0, 0, 0, finest.width, finest.height, finest.texels.data());
+    levels.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
+    glGenerateTextureMipmap(levels.id());
+    return levels;
+}
+
 bool has_styles(const PreparedDecals& decals) {
     return decals.kinds.size() > 0;
 }
 
-void add_style_flags(const PreparedDecals& decals, gl::Flags& flags) {
+void add_record_flags(const PreparedDecals& decals, gl::Flags& flags) {
     if (!has_styles(decals))
         return;
     flags.insert("STYLES");
@@ -62,21 +79,65 @@ std::unique_ptr<const Prepared> StaticDecals::open(const ArchiveReader& archive,
     return open_decals(archive, prefix);
 }
 
-void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) {
-    prepared_ = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
+void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
+                          const MemoryAccount& memory) {
     memory_ = memory;
-    const PreparedDecals& decals = *prepared_;
-    buckets_ = gl::TextureBuffer::from(memory, "static: buckets", GL_R32UI, decals.bucket_entries.span());
-    cells_ = gl::TextureBuffer::from(memory, "static: cells", GL_R32UI, decals.cells.span());
-    texels_ = gl::TextureBuffer::from(memory, "static: words", GL_RGBA32UI, decals.words.span());
-    styles_ = gl::TextureBuffer::from(memory, "static: styles", GL_RG32UI, decals.styles.span());
-    kinds_ = gl::TextureBuffer();
-    if (has_styles(decals)) {
-        kinds_ = gl::TextureBuffer::from(memory, "static: styles", GL_R32UI, decals.kinds.span());
-        style_records_ =
-            gl::TextureBuffer::from(memory, "static: styles", GL_RGBA32UI, decals.style_records.span());
+    auto next = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
+    auto next_lens = std::static_pointer_cast<const PreparedDecals>(std::move(lens));
+    const auto refresh = [&](const char* name, GLenum format, const auto& array, gl::TextureBuffer& buffer) {
+        if (((*next).*array).empty())
+            buffer = gl::TextureBuffer();
+        else if (!prepared_ || !is_same((*prepared_).*array, (*next).*array))
+            buffer = gl::TextureBuffer::from(memory_, name, format, ((*next).*array).span());
+    };
+    refresh("static: buckets", GL_R32UI, &PreparedDecals::bucket_entries, buckets_);
+    cells_.upload(next->cells, next->growing_cells, GL_R32UI, "static: cells", memory_);
+    texels_.upload(next->words, next->growing_words, GL_RGBA32UI, "static: words", memory_);
+    refresh("static: styles", GL_R32UI, &PreparedDecals::kinds, kinds_);
+    refresh("static: styles", GL_RGBA32UI, &PreparedDecals::style_records, style_records_);
+    upload_styles(next.get(), next_lens.get());
+    refresh_levels(prepared_.get(), next.get(), levels_);
+    refresh_levels(lens_.get(), next_lens.get(), lens_levels_);
+    if (!no_vertices_)
+        no_vertices_ = gl::VertexArray::create();
+    prepared_ = std::move(next);
+    lens_ = std::move(next_lens);
+}
+
+// Levels of another look are made anew when they are needed; after an edit, only the buckets that it touched.
+void StaticDecals::refresh_levels(const PreparedDecals* before, const PreparedDecals* after,
+                                  gl::Texture2D& levels) {
+    if (!levels || before == after)
+        return;
+    if (before == nullptr || after == nullptr || before->look_token != after->look_token) {
+        levels = gl::Texture2D();
+        return;
     }
-    no_vertices_ = gl::VertexArray::create();
+    const auto columns = static_cast<uint32_t>(after->grid.columns);
+    for (uint32_t bucket = 0; bucket < after->bucket_entries.size(); ++bucket) {
+        if (before->bucket_entries[bucket] == after->bucket_entries[bucket])
+            continue;
+        levels.update(0, static_cast<int>(bucket % columns) * LEVEL_TEXELS,
+                      static_cast<int>(bucket / columns) * LEVEL_TEXELS, LEVEL_TEXELS, LEVEL_TEXELS,
+                      draw_level_of_bucket(*after, bucket).data());
+    }
+    glGenerateTextureMipmap(levels.id());
+}
+
+// Into the buffer that is there, where it is as large as needed: a restyle allocates nothing.
+void StaticDecals::upload_styles(const PreparedDecals* prepared, const PreparedDecals* lens) {
+    const size_t bytes = prepared->styles.size_bytes();
+    const size_t wanted = lens != nullptr ? 2 * bytes : bytes;
+    const bool is_new = !styles_ || styles_.buffer().bytes() != wanted;
+    if (is_new) {
+        styles_ = gl::TextureBuffer();
+        styles_ = gl::TextureBuffer::create(memory_, "static: styles", GL_RG32UI, wanted, nullptr,
+                                            GL_DYNAMIC_STORAGE_BIT);
+    }
+    if (is_new || !prepared_ || !is_same(prepared_->styles, prepared->styles))
+        styles_.buffer().update(0, bytes, prepared->styles.data());
+    if (lens != nullptr && (is_new || !lens_ || !is_same(lens_->styles, lens->styles)))
+        styles_.buffer().update(bytes, bytes, lens->styles.data());
 }
 
 // Whether some pixel spans enough texels of the finest level (levels.glsl).
@@ -85,15 +146,6 @@ bool StaticDecals::needs_levels(const View& view) const {
     if ((prepared_->style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0)
         return false;  // levels know no slopes
     return view.antialias == Antialias::coverage && view.widest_pixel >= FEWEST_TEXELS * texel;
-}
-
-void StaticDecals::make_levels() {
-    const LevelRaster finest = draw_finest_level(*prepared_);
-    const int count = 1 + static_cast<int>(std::log2(std::max(finest.width, finest.height)));
-    levels_ = gl::Texture2D::create(memory_, "static: levels", GL_RGBA8, finest.width, finest.height, count);
-    levels_.update(0, 0, 0, finest.width, finest.height, finest.texels.data());
-    levels_.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
-    glGenerateTextureMipmap(levels_.id());
 }
 
 // Plain styles too as records, for the program that knows nothing else.
@@ -111,12 +163,14 @@ UpdateReport StaticDecals::update(const View& view) {
         make_records();
     draws_levels_ = needs_levels(view);
     if (draws_levels_ && !levels_)
-        make_levels();
+        levels_ = make_levels(*prepared_, memory_);
+    if (draws_levels_ && lens_ && !lens_levels_)
+        lens_levels_ = make_levels(*lens_, memory_);
     UpdateReport report;
     report.pieces = prepared_->pieces;
-    report.bytes = buckets_.buffer().bytes() + cells_.buffer().bytes() + texels_.buffer().bytes() +
-                   styles_.buffer().bytes() + kinds_.buffer().bytes() + style_records_.buffer().bytes() +
-                   levels_.bytes();
+    report.bytes = buckets_.buffer().bytes() + cells_.bytes() + texels_.bytes() + styles_.buffer().bytes() +
+                   kinds_.buffer().bytes() + style_records_.buffer().bytes() + levels_.bytes() +
+                   lens_levels_.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
@@ -124,11 +178,13 @@ UpdateReport StaticDecals::update(const View& view) {
 void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     gl::Flags flags;
     const bool has_bands = (prepared_->style_flags & STYLE_BANDS) != 0;
+    const bool has_one_color =
+        prepared_->has_one_color && !prepared_->has_hidden && !lens_ && !has_styles(*prepared_);
     if (has_bands)
         flags.insert("BANDS");
-    if (prepared_->has_translucency || has_bands)
+    if (has_bands || any_look([](const PreparedDecals& look) { return look.has_translucency; }))
         flags.insert("TRANSLUCENT");
-    else if (prepared_->has_one_color && view.antialias == Antialias::none && !has_styles(*prepared_))
+    else if (has_one_color && view.antialias == Antialias::none)
         flags.insert("ONE_COLOR");
     if (view.antialias == Antialias::coverage)
         draw_areas(flags, view.coverage, gbuffer, programs);
@@ -172,17 +228,29 @@ void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::Program
     draw_full_screen({"IDS"}, gbuffer, programs);
 }
 
-void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
-                                    gl::ProgramLibrary& programs) {
-    const bool styled = has_styles(*prepared_) || flags.count("THOENY") != 0;
-    const bool one_width = prepared_->has_lines && prepared_->narrowest == prepared_->widest && !styled;
-    add_style_flags(*prepared_, flags);
+void StaticDecals::add_style_flags(gl::Flags& flags) const {
     if (prepared_->has_lines)
         flags.insert("LINES");
-    if (one_width)
-        flags.insert("ONE_WIDTH");
     if (prepared_->has_polygons)
         flags.insert("RINGS");
+    add_record_flags(*prepared_, flags);
+    const bool styled = has_styles(*prepared_) || flags.count("THOENY") != 0;
+    if (prepared_->has_lines && !styled && prepared_->narrowest == prepared_->widest &&
+        !any_look([&](const PreparedDecals& look) {
+            return look.narrowest != prepared_->narrowest || look.widest != prepared_->widest;
+        }))
+        flags.insert("ONE_WIDTH");
+    // A colour of alpha 0 adds nothing to others, but hides what is behind it where colours are opaque.
+    if (flags.count("TRANSLUCENT") == 0 &&
+        any_look([](const PreparedDecals& look) { return look.has_hidden; }))
+        flags.insert("HIDDEN");
+    if (lens_)
+        flags.insert("LENS");
+}
+
+void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
+                                    gl::ProgramLibrary& programs) {
+    add_style_flags(flags);
     gl::Program& program = programs.get("static_decals", flags);
     program.use();
     program.set("position_texture", 0);
@@ -202,22 +270,31 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     texels_.bind(4);
     program.set("decal_styles", 5);
     styles_.bind(5);
-    if (styled) {
+    if (has_styles(*prepared_) || flags.count("THOENY") != 0) {
         program.set("decal_kinds", 7);
         kinds_.bind(7);
-        program.set("style_records", 8);
-        style_records_.bind(8);
+        program.set("style_records", 10);
+        style_records_.bind(10);
+    }
+    if (flags.count("LENS") != 0) {
+        program.set("lens_texture", 8);
+        gbuffer.lens->bind(8);
+        program.set("lens_styles", static_cast<int>(prepared_->styles.size()));
     }
     set_grid(prepared_->grid, program);
     if (flags.count("LEVELS") != 0) {
         program.set("levels", 6);
         levels_.bind(6);
+        if (lens_) {
+            program.set("lens_levels", 9);
+            lens_levels_.bind(9);
+        }
     }
     if (flags.count("ONE_COLOR") != 0) {
-        const std::array<uint8_t, 4> color = prepared_->styles[0].color;
+        const std::array<uint8_t, 4> color = prepared_->one_color;
         program.set("one_color", glm::vec4(color[0], color[1], color[2], color[3]) / 255.0F);
     }
-    if (one_width) {
+    if (flags.count("ONE_WIDTH") != 0) {
         const float scale = std::ldexp(1.0F, -prepared_->largest_scale);
         program.set("line_scale", scale);
         program.set("line_half_width", prepared_->widest * scale);

@@ -6,6 +6,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "technique/static_decals/growing_buffer.h"
 #include "technique/static_decals/prepared_decals.h"
 
 namespace decalgl {
@@ -17,7 +18,8 @@ public:
                                                Progress& progress) const override;
     std::unique_ptr<const Prepared> open(const ArchiveReader& archive, const std::string& prefix,
                                          const MemoryAccount& memory) const override;
-    void upload(std::shared_ptr<const Prepared> prepared, const MemoryAccount& memory) override;
+    void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
+                const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
     bool needs_depth(const View& view) const override { return view.antialias == Antialias::coverage; }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
@@ -25,19 +27,30 @@ public:
 
 private:
     bool needs_levels(const View& view) const;
-    void make_levels();
+    void upload_styles(const PreparedDecals* prepared, const PreparedDecals* lens);
+    // What is seen outside the lens, and inside.
+    template <typename HoldsFor>
+    bool any_look(HoldsFor holds_for) const {
+        return holds_for(*prepared_) || (lens_ && holds_for(*lens_));
+    }
+    static void refresh_levels(const PreparedDecals* before, const PreparedDecals* after,
+                               gl::Texture2D& levels);
+    void add_style_flags(gl::Flags& flags) const;
     void make_records();
-    void draw_areas(const gl::Flags& flags, CoverageRule rule, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void draw_areas(const gl::Flags& flags, CoverageRule rule, const GBufferView& gbuffer,
+                    gl::ProgramLibrary& programs);
     void draw_full_screen(gl::Flags flags, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
 
     std::shared_ptr<const PreparedDecals> prepared_;
+    std::shared_ptr<const PreparedDecals> lens_;  // null without one
     MemoryAccount memory_;
     gl::TextureBuffer buckets_;
-    gl::TextureBuffer cells_;
-    gl::TextureBuffer texels_;
-    gl::TextureBuffer styles_;
+    GrowingBuffer cells_;
+    GrowingBuffer texels_;
+    gl::TextureBuffer styles_;  // those inside the lens follow the others
     gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
-    gl::Texture2D levels_;                     // made by the first view that needs them
+    gl::Texture2D levels_;  // made by the first view that needs them
+    gl::Texture2D lens_levels_;
     bool draws_levels_ = false;
     gl::VertexArray no_vertices_;
 };

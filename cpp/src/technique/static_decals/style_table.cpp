@@ -165,8 +165,7 @@ DecalShape StyleTable::shape_of(const Decal& slot) const {
     }
     shape.scale = static_cast<int8_t>(line_scale(static_cast<float>(shape.longest_reach())));
     shape.covers_cells = style.pattern.period == 0.0 && style.bands.empty() &&
-                         style.slope_correction == SlopeCorrection::none &&
-                         seen.widest_half_width() == seen.half_width();
+                         style.slope_correction == SlopeCorrection::none && seen.stroke().widest == 0.0;
     return shape;
 }
 
@@ -183,7 +182,7 @@ uint32_t StyleTable::kind_of(const Decal& slot, const DecalShape& shape) const {
 }
 
 std::vector<Decal> slots_of(const TechniqueInput& input) {
-    const std::vector<Decal> decals = decals_of(input.layers, input.first_layer);
+    const std::vector<Decal> decals = decals_of(input.layers, input.first_layer, Hidden::kept);
     std::vector<Decal> slots;
     slots.reserve(decals.size());
     for (size_t i = decals.size(); i-- > 0;) {

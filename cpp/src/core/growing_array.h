@@ -1,0 +1,85 @@
+// Arrays that grow at their end while others go on reading what was there before.
+//
+//     older     |-----------|
+//     newer     |------------------|               room for more
+//               one storage ------------------------------------|
+//
+// What was written never changes, so both may be read on any thread. Only one may be continued in place: another one is
+// copied into a storage of its own.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "decalgl/core/large_array.h"
+#include "decalgl/core/memory.h"
+#include "decalgl/core/shared_array.h"
+
+namespace decalgl {
+
+template <typename T>
+class GrowingArray {
+public:
+    GrowingArray() = default;
+
+    bool empty() const { return storage_ == nullptr; }
+    SharedArray<T> values() const { return {Span<const T>(storage_->room.data(), size_), storage_}; }
+    // Where the values lie that its first ones were copied from.
+    const T* origin() const { return storage_ ? storage_->origin : nullptr; }
+
+    // `before` with `more` at its end, charged to the account as `name` where it is copied. `before` is values() of this
+    // one, or this one is empty.
+    GrowingArray appended(const SharedArray<T>& before, Span<const T> more, const MemoryAccount& memory,
+                          const std::string& name) const {
+        GrowingArray result;
+        result.size_ = before.size() + more.size();
+        std::size_t used = before.size();
+        const bool fits = storage_ && result.size_ <= storage_->room.size() &&
+                          storage_->used.compare_exchange_strong(used, result.size_);
+        if (fits) {
+            result.storage_ = storage_;
+        } else {
+            result.storage_ = std::make_shared<Storage>();
+            const std::size_t room = result.size_ + result.size_ / 4 + 4096;
+            result.storage_->charge = MemoryCharge(memory, name, room * sizeof(T));
+            result.storage_->room.resize(room);
+            result.storage_->used = result.size_;
+            result.storage_->origin = before.data();
+            std::copy(before.begin(), before.end(), result.storage_->room.begin());
+        }
+        std::copy(more.begin(), more.end(), result.storage_->room.data() + before.size());
+        return result;
+    }
+
+private:
+    struct Storage {
+        MemoryCharge charge;
+        LargeArray<T> room;
+        std::atomic<std::size_t> used{0};
+        const T* origin = nullptr;
+    };
+
+    std::shared_ptr<Storage> storage_;
+    std::size_t size_ = 0;
+};
+
+// An array whose bytes are counted for as long as anyone holds it.
+template <typename T>
+SharedArray<T> charged(SharedArray<T> values, const MemoryAccount& memory, const std::string& name) {
+    struct Charged {
+        SharedArray<T> values;
+        MemoryCharge charge;
+    };
+    if (values.empty())
+        return values;
+    auto kept = std::make_shared<Charged>();
+    kept->charge = MemoryCharge(memory, name, values.size_bytes());
+    kept->values = std::move(values);
+    const Span<const T> span = kept->values.span();
+    return {span, std::move(kept)};
+}
+
+}  // namespace decalgl

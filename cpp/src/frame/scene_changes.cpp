@@ -1,0 +1,124 @@
+#include "frame/scene_changes.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "decalgl/core/error.h"
+
+namespace decalgl {
+namespace {
+
+void require_layers(const PreparedScene& scene, Span<const LayerLook> looks) {
+    for (const LayerLook& look : looks) {
+        require_layer(scene, look.layer);
+        const PreparedLayer& layer = scene.layers[look.layer];
+        validate(look, layer.rows.size(), layer.name);
+    }
+}
+
+// Errors of a technique do not know the layer's name.
+std::shared_ptr<const Prepared> restyled(const PreparedScene& scene, const Prepared& prepared,
+                                         Span<const LayerLook> looks, const MemoryAccount& memory) {
+    try {
+        return prepared.restyled(looks, memory);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::style || looks.size() != 1)
+            throw;
+        throw Error(ErrorKind::style, "layer '" + scene.layers[looks[0].layer].name + "': " + error.what());
+    }
+}
+
+// The look of added features at the end of what a lens shows, where that is one a feature.
+void append(const DecalLook& added, size_t count, size_t features, DecalLook& look) {
+    if (look.colors.size() == 4 * features && !added.colors.empty())
+        for (size_t i = 0; i < count; ++i)
+            look.colors.insert(look.colors.end(), added.color(i), added.color(i) + 4);
+    if (look.widths.size() == features && !added.widths.empty())
+        for (size_t i = 0; i < count; ++i)
+            look.widths.push_back(added.width(i));
+}
+
+void append(const LayerEdit& edit, size_t features, LayerLook& look) {
+    append(edit.fill, edit.added_count(), features, look.fill);
+    append(edit.stroke, edit.added_count(), features, look.stroke);
+    append(edit.casing, edit.added_count(), features, look.casing);
+}
+
+void look_through_lens(PreparedScene& scene, const MemoryAccount& memory) {
+    for (PreparedPass& pass : scene.passes)
+        pass.in_lens = scene.lens ? restyled(scene, *pass.prepared, scene.lens_looks, memory) : nullptr;
+}
+
+}  // namespace
+
+void require_layer(const PreparedScene& scene, uint32_t layer) {
+    if (layer >= scene.layers.size())
+        throw Error(ErrorKind::input, "there is no layer " + std::to_string(layer) + "; the scene has " +
+                                          std::to_string(scene.layers.size()));
+}
+
+std::shared_ptr<const PreparedScene> restyled_scene(const PreparedScene& scene, Span<const LayerLook> looks,
+                                                    const MemoryAccount& memory) {
+    require_layers(scene, looks);
+    auto changed = std::make_shared<PreparedScene>(scene);
+    changed->fingerprint = SceneFingerprint(Digest{});
+    for (PreparedPass& pass : changed->passes)
+        pass.prepared = restyled(scene, *pass.prepared, looks, memory);
+    look_through_lens(*changed, memory);
+    return changed;
+}
+
+std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, const LayerEdit& edit,
+                                                  const MemoryAccount& memory) {
+    require_layer(scene, edit.layer);
+    const PreparedLayer& layer = scene.layers[edit.layer];
+    validate(edit, layer.kind, layer.rows.size(), layer.name);
+    if (scene.passes.empty())
+        throw Error(ErrorKind::unsupported,
+                    "a scene without features has no index to edit; prepare it anew with the first of them");
+    auto changed = std::make_shared<PreparedScene>(scene);
+    changed->fingerprint = SceneFingerprint(Digest{});
+    for (PreparedPass& pass : changed->passes)
+        pass.prepared = pass.prepared->edited(edit, memory);
+    std::vector<int64_t> rows(layer.rows.begin(), layer.rows.end());
+    const Span<const int64_t> added = edit.geometry.rows.subspan(edit.replaced.size(), edit.added_count());
+    rows.insert(rows.end(), added.begin(), added.end());
+    changed->layers[edit.layer].rows = std::move(rows);
+    for (LayerLook& look : changed->lens_looks)
+        if (look.layer == edit.layer)
+            append(edit, layer.rows.size(), look);
+    look_through_lens(*changed, memory);
+    return changed;
+}
+
+std::shared_ptr<const PreparedScene> scene_with_lens(const PreparedScene& scene,
+                                                     std::shared_ptr<const Lens> lens,
+                                                     std::vector<LayerLook> looks,
+                                                     const MemoryAccount& memory) {
+    if (lens)
+        validate(*lens);
+    require_layers(scene, looks);
+    const bool reorders = std::any_of(looks.begin(), looks.end(),
+                                      [](const LayerLook& look) { return !look.draw_order.empty(); });
+    if (reorders)
+        throw Error(ErrorKind::unsupported,
+                    "the draw order inside a lens is that of the whole picture; restyle the layer instead");
+    auto changed = std::make_shared<PreparedScene>(scene);
+    changed->lens = std::move(lens);
+    changed->lens_looks = std::move(looks);
+    look_through_lens(*changed, memory);
+    return changed;
+}
+
+std::shared_ptr<const PreparedScene> scene_with_moved_lens(const PreparedScene& scene,
+                                                           std::shared_ptr<const Lens> lens) {
+    if (!scene.lens)
+        throw Error(ErrorKind::input, "there is no lens to move; set one first");
+    validate(*lens);
+    auto changed = std::make_shared<PreparedScene>(scene);
+    changed->lens = std::move(lens);
+    return changed;
+}
+
+}  // namespace decalgl

@@ -1,0 +1,297 @@
+"""What the features of each prepared layer look like now, and what keywords of `Renderer.restyle` make of it.
+
+A state is never changed: a restyle makes another one. Colours are kept as they were given; what is hidden or faded
+is known apart, so that it can come back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._colors import alpha_values, parse_color
+from ._filters import Columns, rows_meant
+from .coloring import resolve_colors
+from .errors import InputError, StyleError, close_matches
+from .scene import Layer, draw_order_by
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ._sources import Attributes
+    from .features import FeatureTable
+    from .frame import PreparedLayer
+
+COLOR_KEYWORDS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
+DECAL_KEYWORDS = (*COLOR_KEYWORDS, "width")
+KEYWORDS = (*DECAL_KEYWORDS, "order", "visible", "opacity", "by", "where", "outline", "casing")
+
+
+@dataclass(frozen=True, eq=False)
+class DecalState:
+    """Fills, strokes or casings of a layer. colors: uint8 (features, 4). widths: float64 (features) or None."""
+
+    colors: NDArray[np.uint8]
+    widths: NDArray[np.float64] | None = None
+    widest: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class LayerState:
+    """The look of one layer.
+
+    decals: by "fill", "stroke" and "casing", as far as there are any.
+    shown: bool (features). opacity: float64 (features). Both None for all of it.
+    removed: features that edits removed. geometry: of those that edits moved, replaced or added.
+    """
+
+    layer: Layer | PreparedLayer
+    rows: NDArray[np.int64]
+    row_count: int
+    attributes: Attributes | None
+    by: str
+    decals: Mapping[str, DecalState]
+    shown: NDArray[np.bool_] | None = None
+    opacity: NDArray[np.float64] | None = None
+    draw_order: NDArray[np.int64] | None = None
+    removed: frozenset[int] = frozenset()
+    geometry: Mapping[int, FeatureTable] = field(default_factory=dict)
+
+    @property
+    def columns(self) -> Columns:
+        return Columns(self.attributes, self.layer.name)
+
+    def restyled(self, keywords: Mapping[str, Any]) -> LayerState:
+        """The state after `keywords`. Raises StyleError, ColumnError and InputError that name the layer."""
+        try:
+            return _restyled(self, keywords)
+        except StyleError as error:
+            if repr(self.layer.name) in str(error):
+                raise
+            raise StyleError(f"Layer {self.layer.name!r}: {error}") from error
+
+    def core_look(self, before: LayerState | None = None) -> _core.LayerLook:
+        """As the core takes it; widths and order only where they differ from those of `before`."""
+        look = _core.LayerLook()
+        look.layer = self.layer.index
+        for role, decal in self.decals.items():
+            core = _core.DecalLook()
+            core.colors = self._seen_colors(decal).reshape(-1)
+            old = None if before is None else before.decals[role]
+            if decal.widths is not None and (old is None or old.widths is not decal.widths):
+                core.widths = decal.widths
+            setattr(look, role, core)
+        if self.draw_order is not None and (before is None or before.draw_order is not self.draw_order):
+            look.draw_order = self.draw_order
+        return look
+
+    def _seen_colors(self, decal: DecalState) -> NDArray[np.uint8]:
+        if self.shown is None and self.opacity is None:
+            return decal.colors
+        colors: NDArray[np.uint8] = decal.colors.copy()
+        if self.opacity is not None:
+            colors[:, 3] = np.rint(colors[:, 3] * self.opacity).astype(np.uint8)
+        if self.shown is not None:
+            colors[:, 3] *= self.shown
+        return colors
+
+
+def first_state(layer: Layer | PreparedLayer, look: _core.LayerLook) -> LayerState:
+    """The state of a layer as it was prepared or opened; `look` is the core's answer."""
+    rows = layer.rows
+    scene_layer = layer if isinstance(layer, Layer) else None
+    attributes = None if scene_layer is None else scene_layer.attributes
+    count = attributes.count if attributes is not None else int(rows.max(initial=-1)) + 1
+    decals = {}
+    for role in ("fill", "stroke", "casing"):
+        core = getattr(look, role)
+        if core.colors.size:
+            own = None if scene_layer is None else getattr(scene_layer, role)
+            widths = core.widths if core.widths.size else getattr(own, "widths", None)
+            decals[role] = DecalState(core.colors.reshape(-1, 4), widths, getattr(own, "widest", 0.0))
+    title = "" if scene_layer is None else scene_layer.coloring.title
+    return LayerState(layer, rows, count, attributes, title, decals)
+
+
+def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
+    name = state.layer.name
+    given = {key: value for key, value in keywords.items() if value is not None}
+    require_known(given, KEYWORDS, name)
+    where = None
+    if "where" in given:
+        where = rows_meant(given["where"], state.row_count, state.columns, name, "where")[state.rows]
+    decals = dict(state.decals)
+    main = "fill" if "fill" in decals else "stroke"
+    for role, wanted in _decal_keywords(state, main, given).items():
+        if wanted:
+            decals[role] = _restyled_decal(state, decals[role], wanted, where)
+    result = replace(state, decals=decals)
+    if "visible" in given:
+        shown = rows_meant(given["visible"], state.row_count, state.columns, name, "visible")[state.rows]
+        shown = _merged(state.shown, shown, True, where)
+        result = replace(result, shown=None if shown.all() else shown)
+    if "opacity" in given:
+        opacity = _opacity(state, given["opacity"], given.get("by"))
+        opacity = _merged(state.opacity, opacity, 1.0, where)
+        result = replace(result, opacity=None if (opacity == 1.0).all() else opacity)
+    if "order" in given:
+        result = replace(result, draw_order=_draw_order(state, given["order"]))
+    return result
+
+
+def require_known(given: Mapping[str, Any], known: tuple[str, ...], name: str) -> None:
+    """Raises StyleError, with close matches, for a keyword that is not known."""
+    for key in given:
+        if key not in known:
+            raise StyleError(
+                f"Layer {name!r}: there is no keyword {key!r} here.{close_matches(key, known)} Known are"
+                f" {', '.join(known)}."
+            )
+
+
+def _decal_keywords(state: LayerState, main: str, given: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Keywords by the decals that they are for."""
+    wanted: dict[str, Mapping[str, Any]] = {main: {key: given[key] for key in DECAL_KEYWORDS if key in given}}
+    for keyword, role in (("outline", "stroke"), ("casing", "casing")):
+        if keyword not in given:
+            continue
+        if role not in state.decals or (keyword == "outline") != (state.layer.kind == "polygons"):
+            raise StyleError(
+                f"Layer {state.layer.name!r} has no {keyword} to restyle. Prepare it with one; it may be"
+                " hidden until it is wanted."
+            )
+        if not isinstance(given[keyword], Mapping):
+            raise StyleError(f"{keyword}= must be a dict of keywords such as {{'color': 'red'}}.")
+        wanted[role] = {key: value for key, value in given[keyword].items() if value is not None}
+        require_known(wanted[role], DECAL_KEYWORDS, state.layer.name)
+    return wanted
+
+
+def _restyled_decal(
+    state: LayerState, decal: DecalState, wanted: Mapping[str, Any], where: NDArray[np.bool_] | None
+) -> DecalState:
+    colors = _colors(state, decal, wanted)
+    if where is not None:
+        colors = np.where(where[:, None], colors, decal.colors)
+    if "width" not in wanted:
+        return replace(decal, colors=colors)
+    if decal.widths is None:
+        raise StyleError("fills have no width. Leave width= out, or give it to outline=.")
+    widths = _widths(state, wanted["width"])
+    if where is not None:
+        widths = np.where(where, widths, decal.widths)
+    wrong = np.flatnonzero(~((widths >= 0.0) & (widths < np.inf)))
+    if wrong.size:
+        raise StyleError(
+            f"row {state.rows[wrong[0]]}: width {widths[wrong[0]]:g} is no length. Give metres, 0 or more."
+        )
+    if decal.widest > 0.0 and (widths > decal.widest).any():
+        raise StyleError(
+            f"a width of {widths.max():g} m is more than the {decal.widest:g} m that it was prepared for. Make"
+            " the layer with a larger widest=."
+        )
+    return replace(decal, colors=colors, widths=widths)
+
+
+def _colors(state: LayerState, decal: DecalState, wanted: Mapping[str, Any]) -> NDArray[np.uint8]:
+    coloring = {key: wanted[key] for key in COLOR_KEYWORDS if key in wanted}
+    if not coloring:
+        return decal.colors
+    if coloring.keys() == {"alpha"}:
+        opacity = alpha_values(coloring["alpha"], state.row_count)
+        assert opacity is not None
+        colors: NDArray[np.uint8] = decal.colors.copy()
+        alpha = np.broadcast_to(opacity, state.row_count)[state.rows]
+        colors[:, 3] = np.where(colors[:, 3] > 0, np.rint(255.0 * alpha), 0).astype(np.uint8)
+        return colors
+    if "color" not in coloring and "column" not in coloring:
+        coloring["column"] = _column_of(state, None, "color")
+    if coloring.keys() == {"color"} and (one := parse_color(coloring["color"], strict=False)) is not None:
+        channels = np.rint(np.array(one) * 255.0).astype(np.uint8)
+        return np.tile(channels, (len(state.rows), 1))
+    return resolve_colors(state.row_count, state.attributes, rows=state.rows, **coloring).colors
+
+
+def _column_of(state: LayerState, by: Any, keyword: str) -> Any:
+    if by is not None:
+        return by
+    if not state.by:
+        raise StyleError(
+            f"{keyword}= goes by a column, but the layer was not coloured by one. Name it with"
+            f" {'column=' if keyword == 'color' else 'by='}."
+        )
+    return state.by
+
+
+def _widths(state: LayerState, width: Any) -> NDArray[np.float64]:
+    if state.attributes is not None:
+        return state.attributes.numbers(width, "width")[state.rows]
+    widths = np.asarray(width, dtype=np.float64)
+    if widths.shape not in ((), (state.row_count,)):
+        raise StyleError(f"width has shape {widths.shape}, but the layer has {state.row_count} rows.")
+    return np.array(np.broadcast_to(widths, state.row_count)[state.rows])
+
+
+def _opacity(state: LayerState, opacity: Any, by: Any) -> NDArray[np.float64]:
+    if not isinstance(opacity, Mapping):
+        values = alpha_values(opacity, state.row_count)
+        assert values is not None
+        return np.array(np.broadcast_to(values, state.row_count)[state.rows])
+    column = _column_of(state, by, "opacity")
+    categories = state.columns[column] if isinstance(column, str) else np.asarray(column)
+    if categories.shape != (state.row_count,):
+        raise StyleError(
+            f"by= has shape {categories.shape}, but the layer has {state.row_count} rows. Give one value a row."
+        )
+    result = np.ones(len(state.rows))
+    own = categories[state.rows]
+    for category, value in opacity.items():
+        is_category = np.asarray(own == category, dtype=np.bool_)
+        one = alpha_values(value, 0)
+        assert one is not None
+        result[is_category] = float(one)
+    unknown = [category for category in opacity if not (categories == category).any()]
+    if unknown:
+        known = list(dict.fromkeys(map(str, categories.tolist())))
+        raise StyleError(
+            f"opacity= names {unknown[0]!r}, which no row has.{close_matches(str(unknown[0]), known)}"
+        )
+    return result
+
+
+def _merged(before: Any, wanted: Any, default: Any, where: NDArray[np.bool_] | None) -> Any:
+    if where is None:
+        return np.array(wanted)
+    return np.where(where, wanted, default if before is None else before)
+
+
+def _draw_order(state: LayerState, order: Any) -> NDArray[np.int64]:
+    if isinstance(state.layer, Layer) and state.attributes is not None:
+        if isinstance(order, str) and order == "feature":
+            return np.arange(len(state.rows), dtype=np.int64)
+        if isinstance(order, str) and order == "size":
+            return np.argsort(_sizes(state, state.layer), kind="stable").astype(np.int64)
+        return draw_order_by(order, state.rows, state.attributes)
+    if isinstance(order, str):
+        if order == "feature":
+            return np.arange(len(state.rows), dtype=np.int64)
+        raise InputError(
+            f"Layer {state.layer.name!r} comes from a saved scene, which keeps no columns. Give one number a"
+            " row, or prepare the scene from its data."
+        )
+    keys = np.asarray(order, dtype=np.float64)
+    if keys.shape != (state.row_count,):
+        raise InputError(f"order= has shape {keys.shape}, but the layer has {state.row_count} rows.")
+    return np.argsort(keys[state.rows], kind="stable").astype(np.int64)
+
+
+def _sizes(state: LayerState, layer: Layer) -> NDArray[np.float64]:
+    sizes = np.zeros(len(state.rows))
+    sizes[: len(layer.features)] = layer.features.sizes()
+    for feature, table in state.geometry.items():
+        sizes[feature] = table.sizes()[0]
+    return sizes
