@@ -25,7 +25,7 @@ struct Group {
     uint slot;
     bool line;
     mat2 foot;         // in the group's units
-    float reach;       // of the pixel's corners from its centre
+    float reach;       // of the pixel's farthest corner from its centre
     vec2 at;           // the pixel's centre, in the group's coordinates
     vec2 corner;       // from the cell's corner to the centre, in the group's units
     vec2 from;         // from the last word's point to the centre
@@ -61,11 +61,11 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     group.style.half_width *= width_factor(group.style);
     group.metric = metric_of(group.style);
     group.pen = lifted_pen;
-    scale = group.line ? group.style.scale : 1.0;
+    scale = is_line(header) ? group.style.scale : 1.0;
     group.half_width = group.style.half_width;
     foot = group.metric * foot;
 #else
-    vec2 stroke = group.line ? stroke_of(header) : vec2(1.0, 0.0);
+    vec2 stroke = is_line(header) ? stroke_of(header) : vec2(1.0, 0.0);
     scale = stroke.x;
     group.half_width = stroke.y;
 #endif
@@ -74,7 +74,7 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     for (int i = 0; i < sample_count; ++i) shares[i] = group.covered != 0u ? 0.0 : not_covered;
 #endif
     group.foot = foot * scale;
-    group.reach = 0.5 * (length(group.foot[0]) + length(group.foot[1]));
+    group.reach = 0.5 * max(length(group.foot[0] + group.foot[1]), length(group.foot[0] - group.foot[1]));
     group.at = local * scale + bias;
     // Rounded as what leads from the border's points is: not to be simplified.
     precise vec2 corner = group.at - bias;
@@ -83,15 +83,38 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     return group;
 }
 
+// Known while compiling where all are of one kind, so that the other kind's code is left out.
+bool is_stroke(Group group) {
+#if defined(LINES) && defined(RINGS)
+    return group.line;
+#elif defined(LINES)
+    return true;
+#else
+    return false;
+#endif
+}
+
 // An edge between `from` and `to`, which lead from its ends to the pixel's centre, decides for all samples alike, or for
 // each by itself.
 const uint for_each = 1u;  // no mask of all samples or none
 uint alike_in_stroke(Group group, vec2 from, vec2 to) {
     vec2 along = from - to;
-    float t = clamp(dot(from, along) / max(dot(along, along), 1e-6), 0.0, 1.0);
-    float apart = length(from - t * along);
-    if (apart > group.half_width + group.reach) return 0u;
-    return apart + group.reach <= group.half_width ? all_samples : for_each;
+    float length2 = dot(along, along);
+    float wide = group.half_width * sqrt(length2);
+    float t = dot(from, along);
+    float across = abs(from.x * along.y - from.y * along.x);
+    // How far the pixel reaches along the edge and across it: most pixels near a border are told by these.
+    float t_reach = half_extent(along * group.foot);
+    float across_reach = half_extent(vec2(along.y, -along.x) * group.foot);
+    bool apart = across > wide + across_reach || t + t_reach < -wide || t - t_reach > length2 + wide;
+    bool within = across + across_reach <= wide && t >= t_reach && t + t_reach <= length2;
+    // Around an end, or a point, the farthest corner decides.
+    float outer = group.half_width + group.reach, inner = max(group.half_width - group.reach, 0.0);
+    float from_end2 = dot(to, to);
+    bool is_point = length2 == 0.0;
+    if (is_point ? from_end2 > outer * outer : apart) return 0u;
+    bool near_line = t >= 0.0 && t <= length2 && across * across < inner * inner * length2;
+    return from_end2 < inner * inner || near_line || within && !is_point ? all_samples : for_each;
 }
 
 #ifdef STYLES
@@ -223,14 +246,14 @@ uint read_point(inout Group group, uint word) {
 #endif
     vec2 to = group.at - point_of(word);
 #ifdef STYLES
-    if (group.line) to = group.metric * to;
+    if (is_stroke(group)) to = group.metric * to;
 #endif
     group.before = starts_edge(word) ? to : group.from;
     group.from = to;
 #ifdef STYLES
-    if (group.line) return next_alike(group, word, group.before, to);
+    if (is_stroke(group)) return next_alike(group, word, group.before, to);
 #else
-    if (group.line) return alike_in_stroke(group, group.before, to);
+    if (is_stroke(group)) return alike_in_stroke(group, group.before, to);
 #endif
     return starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, group.before, to));
 }
@@ -271,7 +294,7 @@ void add_group(inout Samples samples, inout uint open, Group group, Cell cell, v
     uint mask = group.covered & open;
     open = all_samples;
 #ifdef HATCHES
-    if (!group.line && has(group.style, STYLE_HATCH)) {
+    if (!is_stroke(group) && has(group.style, STYLE_HATCH)) {
         vec2 inside = vec2(cell.corner & (BUCKET_QUANTA - 1)) + local;
         int i = 0;
         do {
@@ -327,14 +350,14 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
                 ended = word == LIST_END || samples.open == 0u;
             } else {
                 alike = read_point(group, word);
-                if (alike != for_each) group.covered = group.line ? group.covered | alike : group.covered ^ alike;
+                if (alike != for_each) group.covered = is_stroke(group) ? group.covered | alike : group.covered ^ alike;
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
 #ifdef STYLES
-            if (group.line) group.covered |= styled_mask(group, group.before, group.from);
+            if (is_stroke(group)) group.covered |= styled_mask(group, group.before, group.from);
 #else
-            if (group.line) group.covered |= stroke_mask(group, group.before, group.from);
+            if (is_stroke(group)) group.covered |= stroke_mask(group, group.before, group.from);
 #endif
             else group.covered ^= crossing_mask(crossing_of(group, group.before, group.from));
         }

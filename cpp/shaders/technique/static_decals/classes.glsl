@@ -47,7 +47,7 @@ Classed classed_cell(Cell cell, vec2 local, mat2 foot) {
         } else {
             uint mask = read_point(group, word);
             alike = mask != for_each;
-            if (alike) group.covered = group.line ? group.covered | mask : group.covered ^ mask;
+            if (alike) group.covered = is_stroke(group) ? group.covered | mask : group.covered ^ mask;
         }
     } while (alike && !ended);
     return Classed(alike ? CLASS_DONE : CLASS_CELLS, sum);
