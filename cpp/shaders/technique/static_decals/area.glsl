@@ -9,6 +9,7 @@
 // (0, 5, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
 #include "shared/sample_offsets.glsl"
 #include "technique/static_decals/point.glsl"
+#include "technique/static_decals/half_planes.glsl"
 #include "technique/static_decals/levels.glsl"
 
 const uint all_samples = 0xFFFFFFFFu;
@@ -224,6 +225,7 @@ uint alike_in_crossing(Crossing crossing) {
     return row_all != border_all ? all_samples : 0u;
 }
 
+#ifdef STYLES
 uint crossing_mask(Crossing crossing) {
     uint mask = 0u;
     for (int i = 0; i < sample_count; ++i) {
@@ -234,6 +236,16 @@ uint crossing_mask(Crossing crossing) {
     }
     return mask;
 }
+#else
+// Edges that meet in a point have the same word for it, and polygons on both sides of an edge the same for the edge.
+uint crossing_mask(Crossing crossing) {
+    Direction up = direction_of(crossing.rise);
+    uint low = samples_beyond(up, crossing.low.y), high = samples_beyond(up, crossing.high.y);
+    uint on_row = low & ~high & samples_beyond(direction_of(crossing.side_step), crossing.side);
+    uint border = samples_beyond(up, crossing.above);
+    return on_row ^ border;
+}
+#endif
 
 // Reads the group's next point, and says whether the edge to it decides for all samples alike.
 uint read_point(inout Group group, uint word) {

@@ -7,6 +7,7 @@
 #include "gl/gl.h"
 #include "gl/texture.h"
 #include "technique/static_decals/area_classes.h"
+#include "technique/static_decals/half_planes.h"
 #include "technique/static_decals/levels.h"
 
 namespace decalgl {
@@ -75,6 +76,7 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, const Memory
         style_records_ =
             gl::TextureBuffer::from(memory, "static: styles", GL_RGBA32UI, decals.style_records.span());
     }
+    half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_R32UI, make_half_planes());
     no_vertices_ = gl::VertexArray::create();
 }
 
@@ -103,7 +105,7 @@ UpdateReport StaticDecals::update(const View& view) {
     report.pieces = prepared_->pieces;
     report.bytes = buckets_.buffer().bytes() + cells_.buffer().bytes() + texels_.buffer().bytes() +
                    styles_.buffer().bytes() + kinds_.buffer().bytes() + style_records_.buffer().bytes() +
-                   levels_.bytes();
+                   half_planes_.buffer().bytes() + levels_.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
@@ -186,6 +188,10 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     texels_.bind(4);
     program.set("decal_styles", 5);
     styles_.bind(5);
+    if (sees_area && !has_styles(*prepared_)) {
+        program.set("half_planes", 9);
+        half_planes_.bind(9);
+    }
     if (has_styles(*prepared_)) {
         program.set("decal_kinds", 7);
         kinds_.bind(7);

@@ -36,6 +36,7 @@ private:
     gl::TextureBuffer texels_;
     gl::TextureBuffer styles_;
     gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
+    gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
     gl::Texture2D levels_;                     // made by the first view that needs them
     bool draws_levels_ = false;
     gl::VertexArray no_vertices_;
