@@ -1,4 +1,4 @@
-"""Finds the 32 sample positions of `cpp/shaders/shared/sample_offsets.glsl`.
+"""Finds the 32 sample positions of `cpp/shaders/shared/sample_offsets.h`.
 
 Among many scrambled (0, 5, 2)-nets (Sobol' points with Owen's scrambling), keeps the one whose mean over the samples
 errs least, in the root mean square, on straight edges at every angle and offset that cross the pixel.
@@ -76,7 +76,7 @@ def main() -> None:
         print(
             "    "
             + ", ".join(f"vec2({x:.6f}, {y:.6f})" for x, y in best[row : row + 4])
-            + ("," if row < 28 else "")
+            + (", \\" if row < 28 else "")
         )
 
 

@@ -33,7 +33,9 @@ struct Group {
     vec2 before;       // from that of the word before it
     float half_width;  // of a line
     uint covered;      // samples
-#ifdef STYLES
+#ifndef STYLES
+    uint beyond;       // of a line: those that may lie in the disc around its last point
+#else
     bool clip;         // only cuts the next group off
     vec2 last;         // the last word's point
     Style style;
@@ -81,6 +83,9 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     precise vec2 corner = group.at - bias;
     group.corner = corner;
     group.from = group.before = vec2(0.0);
+#ifndef STYLES
+    group.beyond = 0u;
+#endif
     return group;
 }
 
@@ -169,25 +174,39 @@ uint styled_mask(Group group, vec2 from, vec2 to) {
 }
 #endif
 
-// Samples inside the stroke: distances along and across the edge are affine in the sample's place.
-uint stroke_mask(Group group, vec2 from, vec2 to) {
-    vec2 along = from - to;
-    float run = length(along);
-    vec2 axis = run > 0.0 ? along / run : vec2(1.0, 0.0);
-    float t = dot(from, axis);
-    float s = from.x * axis.y - from.y * axis.x;
-    vec2 dt = axis * group.foot;
-    vec2 ds = vec2(axis.y, -axis.x) * group.foot;
-    float half_width2 = group.half_width * group.half_width;
+#ifndef STYLES
+// Of these samples, those in the disc around a point; `from` leads from it to the pixel's centre.
+uint samples_in_disc(Group group, vec2 from, uint samples) {
     uint mask = 0u;
-    for (int i = 0; i < sample_count; ++i) {
-        float ti = t + dot(dt, sample_offsets[i]);
-        float si = s + dot(ds, sample_offsets[i]);
-        float past = ti - clamp(ti, 0.0, run);
-        mask |= uint(si * si + past * past <= half_width2) << i;
-    }
+    do {
+        int i = max(findLSB(samples), 0);
+        vec2 at = from + group.foot * sample_offsets[i];
+        mask |= uint(dot(at, at) <= group.half_width * group.half_width) << i;
+        samples &= samples - 1u;
+    } while (samples != 0u);
     return mask;
 }
+
+// Adds an edge to a line: the rectangle along it, and what the disc around its beginning adds where the edge before
+// ends; or, where there is no edge, what the disc around the end of the edge before adds. Few samples lie beyond the edges:
+// discs take them one by one.
+void add_edge(inout Group group, vec2 from, vec2 to, bool is_edge) {
+    vec2 along = from - to;
+    float run = length(along);
+    vec2 axis = along / max(run, 1e-6);
+    float t = dot(from, axis);
+    float s = from.x * axis.y - from.y * axis.x;
+    Direction across = direction_of(vec2(axis.y, -axis.x) * group.foot);
+    Direction onwards = direction_of(axis * group.foot);
+    uint beside = samples_beyond(across, s + group.half_width) & ~samples_beyond(across, s - group.half_width);
+    uint begun = samples_beyond(onwards, t), ended = samples_beyond(onwards, t - run);
+    if (is_edge) group.covered |= beside & begun & ~ended;
+    uint corner = group.beyond & ~group.covered;
+    if (is_edge) corner &= beside & ~begun;
+    group.covered |= corner & samples_in_disc(group, from, corner);
+    group.beyond = is_edge ? beside & ended : 0u;
+}
+#endif
 
 // How the walk from the cell's corner meets a ring's edge (ring_cells.h): `above` is how far above the place where the
 // border is crossed the pixel's centre is, and far below where it is not.
@@ -247,6 +266,18 @@ uint crossing_mask(Crossing crossing) {
 }
 #endif
 
+#ifndef STYLES
+// Whether a stroke's next edge decides for all samples alike. A point that starts an edge is for each sample if the edge before ends in this
+// pixel.
+uint next_alike(inout Group group, bool starts) {
+    bool open_end = group.beyond != 0u;
+    uint alike = alike_in_stroke(group, group.before, group.from);
+    if (starts) alike = open_end ? for_each : 0u;
+    if (alike != for_each) group.beyond = starts ? all_samples : 0u;
+    return alike;
+}
+#endif
+
 // Reads the group's next point, and says whether the edge to it decides for all samples alike.
 uint read_point(inout Group group, uint word) {
 #ifdef PATTERNS
@@ -260,12 +291,14 @@ uint read_point(inout Group group, uint word) {
 #ifdef STYLES
     if (is_stroke(group)) to = group.metric * to;
 #endif
+#ifdef STYLES
     group.before = starts_edge(word) ? to : group.from;
     group.from = to;
-#ifdef STYLES
     if (is_stroke(group)) return next_alike(group, word, group.before, to);
 #else
-    if (is_stroke(group)) return alike_in_stroke(group, group.before, to);
+    group.before = group.from;
+    group.from = to;
+    if (is_stroke(group)) return next_alike(group, starts_edge(word));
 #endif
     return starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, group.before, to));
 }
@@ -349,10 +382,25 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
     bool ended = false;
     do {
         uint alike = all_samples;
+        uint word;
         do {
-            uint word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
+            word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
+            bool ends = is_header(word);
+#ifndef STYLES
+            // The last edge's end first; the header is read again.
+            if (ends && is_stroke(group) && group.beyond != 0u) {
+                alike = for_each;
+                group.before = group.from;
+                ends = false;
+                --at;
+            } else
+#endif
+            if (!ends) {
+                alike = read_point(group, word);
+                if (alike != for_each) group.covered = is_stroke(group) ? group.covered | alike : group.covered ^ alike;
+            }
             ++at;
-            if (is_header(word)) {
+            if (ends) {
 #ifdef STYLES
                 add_group(samples, open, group, cell, local, foot);
 #else
@@ -360,16 +408,16 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
 #endif
                 group = group_of(word, bias, local, foot);
                 ended = word == LIST_END || samples.open == 0u;
-            } else {
-                alike = read_point(group, word);
-                if (alike != for_each) group.covered = is_stroke(group) ? group.covered | alike : group.covered ^ alike;
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
 #ifdef STYLES
             if (is_stroke(group)) group.covered |= styled_mask(group, group.before, group.from);
 #else
-            if (is_stroke(group)) group.covered |= stroke_mask(group, group.before, group.from);
+            if (is_stroke(group)) {
+                add_edge(group, group.before, group.from, !is_header(word) && !starts_edge(word));
+                if (!is_header(word) && starts_edge(word)) group.beyond = all_samples;
+            }
 #endif
             else group.covered ^= crossing_mask(crossing_of(group, group.before, group.from));
         }

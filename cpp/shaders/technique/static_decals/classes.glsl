@@ -42,6 +42,10 @@ Classed classed_cell(Cell cell, vec2 local, mat2 foot) {
         ++at;
         if (is_header(word)) {
             alike = add_alike(sum, open, group);
+#ifndef STYLES
+            // A point without an edge is a disc.
+            alike = alike && group.beyond == 0u;
+#endif
             group = group_of(word, bias, local, foot);
             ended = word == LIST_END || sum.a >= 0.999;
         } else {
