@@ -188,8 +188,8 @@ uint samples_in_disc(Group group, vec2 from, uint samples) {
 }
 
 // Adds an edge to a line: the rectangle along it, and what the disc around its beginning adds where the edge before
-// ends; or, where there is no edge, what the disc around the end of the edge before adds. Few samples lie beyond the edges:
-// discs take them one by one.
+// ends; or, where there is no edge, what the disc around the end of the edge before adds. Few samples lie beyond the
+// edges: discs take them one by one.
 void add_edge(inout Group group, vec2 from, vec2 to, bool is_edge) {
     vec2 along = from - to;
     float run = length(along);
@@ -267,8 +267,8 @@ uint crossing_mask(Crossing crossing) {
 #endif
 
 #ifndef STYLES
-// Whether a stroke's next edge decides for all samples alike. A point that starts an edge is for each sample if the edge before ends in this
-// pixel.
+// Whether a stroke's next edge decides for all samples alike. A point that starts an edge does not where the edge before
+// may end in this pixel.
 uint next_alike(inout Group group, bool starts) {
     bool open_end = group.beyond != 0u;
     uint alike = alike_in_stroke(group, group.before, group.from);

@@ -2,8 +2,8 @@
 //
 // After Carpenter 1984, "The A-buffer, an antialiased hidden surface method". A half plane that covers a share of the
 // pixel has that share of the samples, rounded: those that lie deepest in it. So an edge errs by 1/64 of the pixel
-// and by the table's own steps, and not by where the samples happen to lie. Of two parallel half planes one has all samples
-// of the other, and opposite ones share the samples out between them.
+// and by the table's own steps, and not by where the samples happen to lie. Of two parallel half planes one has all
+// samples of the other, and opposite ones share the samples out between them.
 //
 //     row      direction (a, b) of the half plane a x + b y + distance >= 0, as the turn from the x axis by the
 //              place on the diamond |a| + |b| = 1; the lower half turn is the opposite of the upper one
