@@ -1,4 +1,4 @@
-"""Finds where in a pixel samples lie: `cpp/shaders/shared/sample_offsets.glsl`, `cpp/src/frame/sample_pattern.cpp`.
+"""Finds where in a pixel samples lie: `cpp/shaders/shared/sample_offsets.h`, `cpp/src/frame/sample_pattern.cpp`.
 
 Among many scrambled (0, m, 2)-nets (Sobol' points with Owen's scrambling), keeps the one whose mean over the samples
 errs least, in the root mean square, on straight edges at every angle and offset that cross the pixel.

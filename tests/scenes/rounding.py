@@ -123,7 +123,7 @@ def composite_of(view: View, scene: dg.Scene, surface: ref.Surface) -> FloatArra
 
 def sample_offsets() -> FloatArray:
     """Where in a pixel antialias="coverage" looks (samples, 2), to the right and up from the centre."""
-    text = (SHADERS / "shared" / "sample_offsets.glsl").read_text(encoding="utf-8")
+    text = (SHADERS / "shared" / "sample_offsets.h").read_text(encoding="utf-8")
     pairs = re.findall(r"vec2\(([-.\d]+), ([-.\d]+)\)", text)
     return np.array(pairs, dtype=np.float64)
 

@@ -9,6 +9,7 @@
 // (0, 5, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
 #include "shared/sample_offsets.glsl"
 #include "technique/static_decals/point.glsl"
+#include "technique/static_decals/half_planes.glsl"
 #include "technique/static_decals/levels.glsl"
 
 const uint all_samples = 0xFFFFFFFFu;
@@ -16,6 +17,11 @@ const uint all_samples = 0xFFFFFFFFu;
 // Pixels larger than this many cells are sampled point by point.
 const float most_cells_across = 1.5;
 const float most_cells_looked_into = 4.0;  // where strokes are drawn by their estimated coverage
+
+// Whether strokes may have parts other than bars with discs at their ends, or are told sample by sample.
+#if defined(STYLES) && (defined(JOINED) || defined(PATTERNS) || defined(BANDS) || defined(THOENY))
+#define PARTS
+#endif
 
 float half_extent(vec2 across) {
     return 0.5 * (abs(across.x) + abs(across.y));
@@ -26,18 +32,21 @@ struct Group {
     uint slot;
     bool line;
     mat2 foot;         // in the group's units
-    float reach;       // of the pixel's corners from its centre
+    float reach;       // of the pixel's farthest corner from its centre
     vec2 at;           // the pixel's centre, in the group's coordinates
     vec2 corner;       // from the cell's corner to the centre, in the group's units
     vec2 from;         // from the last word's point to the centre
     vec2 before;       // from that of the word before it
     float half_width;  // of a line
     uint covered;      // samples
+    uint beyond;       // of a line: those that may lie in the disc around its last point
 #ifdef STYLES
     bool clip;         // only cuts the next group off
-    vec2 last;         // the last word's point
     Style style;
     mat2 metric;
+#endif
+#ifdef PARTS
+    vec2 last;         // the last word's point
     Pen pen;
     Pen pen_before;    // the edge that comes next
     float run;         // its length on the map
@@ -60,28 +69,42 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     group.style = style_of(group.slot, half_width_of(group.slot));
     group.style.half_width *= width_factor(group.style);
     group.metric = metric_of(group.style);
-    group.pen = group.pen_before = lifted_pen;
-    group.run = 0.0;
-    group.last = vec2(-1.0);
-    scale = group.line ? group.style.scale : 1.0;
+    scale = is_line(header) ? group.style.scale : 1.0;
     group.half_width = group.style.half_width;
     foot = group.metric * foot;
 #elif defined(LINES)
-    vec2 stroke = group.line ? stroke_of(header) : vec2(1.0, 0.0);
+    vec2 stroke = is_line(header) ? stroke_of(header) : vec2(1.0, 0.0);
     scale = stroke.x;
     group.half_width = stroke.y;
+#endif
+#ifdef PARTS
+    group.pen = group.pen_before = lifted_pen;
+    group.run = 0.0;
+    group.last = vec2(-1.0);
 #endif
 #ifdef BANDS
     for (int i = 0; i < sample_count; ++i) shares[i] = group.covered != 0u ? 0.0 : not_covered;
 #endif
     group.foot = foot * scale;
-    group.reach = 0.5 * (length(group.foot[0]) + length(group.foot[1]));
+    group.reach = 0.5 * max(length(group.foot[0] + group.foot[1]), length(group.foot[0] - group.foot[1]));
     group.at = local * scale + bias;
     // Rounded as what leads from the border's points is: not to be simplified.
     precise vec2 corner = group.at - bias;
     group.corner = corner;
     group.from = group.before = vec2(0.0);
+    group.beyond = 0u;
     return group;
+}
+
+// Known while compiling where all are of one kind, so that the other kind's code is left out.
+bool is_stroke(Group group) {
+#if defined(LINES) && defined(RINGS)
+    return group.line;
+#elif defined(LINES)
+    return true;
+#else
+    return false;
+#endif
 }
 
 // An edge between `from` and `to`, which lead from its ends to the pixel's centre, decides for all samples alike, or for
@@ -89,16 +112,23 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
 const uint for_each = 1u;  // no mask of all samples or none
 uint alike_in_stroke(Group group, vec2 from, vec2 to) {
     vec2 along = from - to;
-    float t = clamp(dot(from, along) / max(dot(along, along), 1e-6), 0.0, 1.0);
-    float apart = length(from - t * along);
-    if (apart > group.half_width + group.reach) return 0u;
-    return apart + group.reach <= group.half_width ? all_samples : for_each;
+    float length2 = dot(along, along);
+    float wide = group.half_width * sqrt(length2);
+    float t = dot(from, along);
+    float across = abs(from.x * along.y - from.y * along.x);
+    // How far the pixel reaches along the edge and across it: most pixels near a border are told by these.
+    float t_reach = half_extent(along * group.foot);
+    float across_reach = half_extent(vec2(along.y, -along.x) * group.foot);
+    bool apart = across > wide + across_reach || t + t_reach < -wide || t - t_reach > length2 + wide;
+    bool within = across + across_reach <= wide && t >= t_reach && t + t_reach <= length2;
+    // Around an end, or a point, the farthest corner decides.
+    float outer = group.half_width + group.reach, inner = max(group.half_width - group.reach, 0.0);
+    float from_end2 = dot(to, to);
+    bool is_point = length2 == 0.0;
+    if (is_point ? from_end2 > outer * outer : apart) return 0u;
+    bool near_line = t >= 0.0 && t <= length2 && across * across < inner * inner * length2;
+    return from_end2 < inner * inner || near_line || within && !is_point ? all_samples : for_each;
 }
-
-// Whether strokes may have parts other than bars with discs at their ends, or need to know how far each sample is.
-#if defined(JOINED) || defined(BANDS)
-#define PARTS
-#endif
 
 #ifdef PARTS
 // How far a mitred corner reaches, in half widths.
@@ -149,27 +179,39 @@ uint styled_mask(Group group, vec2 from, vec2 to) {
     } while (++i < sample_count);
     return mask;
 }
-#endif
-
-// Samples inside the stroke: distances along and across the edge are affine in the sample's place.
-uint stroke_mask(Group group, vec2 from, vec2 to) {
-    vec2 along = from - to;
-    float run = length(along);
-    vec2 axis = run > 0.0 ? along / run : vec2(1.0, 0.0);
-    float t = dot(from, axis);
-    float s = from.x * axis.y - from.y * axis.x;
-    vec2 dt = axis * group.foot;
-    vec2 ds = vec2(axis.y, -axis.x) * group.foot;
-    float half_width2 = group.half_width * group.half_width;
+#else
+// Of these samples, those in the disc around a point; `from` leads from it to the pixel's centre.
+uint samples_in_disc(Group group, vec2 from, uint samples) {
     uint mask = 0u;
-    for (int i = 0; i < sample_count; ++i) {
-        float ti = t + dot(dt, sample_offsets[i]);
-        float si = s + dot(ds, sample_offsets[i]);
-        float past = ti - clamp(ti, 0.0, run);
-        mask |= uint(si * si + past * past <= half_width2) << i;
-    }
+    do {
+        int i = max(findLSB(samples), 0);
+        vec2 at = from + group.foot * sample_offsets[i];
+        mask |= uint(dot(at, at) <= group.half_width * group.half_width) << i;
+        samples &= samples - 1u;
+    } while (samples != 0u);
     return mask;
 }
+
+// Adds an edge to a line: the rectangle along it, and what the disc around its beginning adds where the edge before
+// ends; or, where there is no edge, what the disc around the end of the edge before adds. Few samples lie beyond the
+// edges: discs take them one by one.
+void add_edge(inout Group group, vec2 from, vec2 to, bool is_edge) {
+    vec2 along = from - to;
+    float run = length(along);
+    vec2 axis = along / max(run, 1e-6);
+    float t = dot(from, axis);
+    float s = from.x * axis.y - from.y * axis.x;
+    Direction across = direction_of(vec2(axis.y, -axis.x) * group.foot);
+    Direction onwards = direction_of(axis * group.foot);
+    uint beside = samples_beyond(across, s + group.half_width) & ~samples_beyond(across, s - group.half_width);
+    uint begun = samples_beyond(onwards, t), ended = samples_beyond(onwards, t - run);
+    if (is_edge) group.covered |= beside & begun & ~ended;
+    uint corner = group.beyond & ~group.covered;
+    if (is_edge) corner &= beside & ~begun;
+    group.covered |= corner & samples_in_disc(group, from, corner);
+    group.beyond = is_edge ? beside & ended : 0u;
+}
+#endif
 
 // How the walk from the cell's corner meets a ring's edge (ring_cells.h): `above` is how far above the place where the
 // border is crossed the pixel's centre is, and far below where it is not.
@@ -207,16 +249,26 @@ uint alike_in_crossing(Crossing crossing) {
     return row_all != border_all ? all_samples : 0u;
 }
 
+// Edges that meet in a point have the same word for it, and polygons on both sides of an edge the same for the edge.
 uint crossing_mask(Crossing crossing) {
-    uint mask = 0u;
-    for (int i = 0; i < sample_count; ++i) {
-        float rise = dot(crossing.rise, sample_offsets[i]);
-        float side = crossing.side + dot(crossing.side_step, sample_offsets[i]);
-        bool on_row = crossing.low.y + rise >= 0.0 && crossing.high.y + rise < 0.0 && side >= 0.0;
-        mask |= uint(on_row != (crossing.above + rise >= 0.0)) << i;
-    }
-    return mask;
+    Direction up = direction_of(crossing.rise);
+    uint low = samples_beyond(up, crossing.low.y), high = samples_beyond(up, crossing.high.y);
+    uint on_row = low & ~high & samples_beyond(direction_of(crossing.side_step), crossing.side);
+    uint border = samples_beyond(up, crossing.above);
+    return on_row ^ border;
 }
+
+#ifndef PARTS
+// Whether a stroke's next edge decides for all samples alike. A point that starts an edge does not where the edge before
+// may end in this pixel.
+uint next_alike(inout Group group, bool starts) {
+    bool open_end = group.beyond != 0u;
+    uint alike = alike_in_stroke(group, group.before, group.from);
+    if (starts) alike = open_end ? for_each : 0u;
+    if (alike != for_each) group.beyond = starts ? all_samples : 0u;
+    return alike;
+}
+#endif
 
 // Reads the group's next point, and says whether the edge to it decides for all samples alike.
 uint read_point(inout Group group, uint word) {
@@ -229,14 +281,16 @@ uint read_point(inout Group group, uint word) {
 #endif
     vec2 to = group.at - point_of(word);
 #ifdef STYLES
-    if (group.line) to = group.metric * to;
+    if (is_stroke(group)) to = group.metric * to;
 #endif
+#ifdef PARTS
     group.before = starts_edge(word) ? to : group.from;
     group.from = to;
-#ifdef PARTS
-    if (group.line) return next_alike(group, word, group.before, to);
+    if (is_stroke(group)) return next_alike(group, word, group.before, to);
 #else
-    if (group.line) return alike_in_stroke(group, group.before, to);
+    group.before = group.from;
+    group.from = to;
+    if (is_stroke(group)) return next_alike(group, starts_edge(word));
 #endif
     return starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, group.before, to));
 }
@@ -291,7 +345,7 @@ void add_group(inout Samples samples, inout uint open, Group group, Cell cell, v
     }
     uint mask = group.covered & open;
     open = all_samples;
-    if (!group.line) mask &= shown_samples(group, cell, local, foot);
+    if (!is_stroke(group)) mask &= shown_samples(group, cell, local, foot);
     if (mask == 0u || !is_shown(group.slot)) return;
     vec4 straight = color_of(group.slot);
 #ifdef BANDS
@@ -327,10 +381,25 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
     bool ended = false;
     do {
         uint alike = all_samples;
+        uint word;
         do {
-            uint word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
+            word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
+            bool ends = is_header(word);
+#ifndef PARTS
+            // The last edge's end first; the header is read again.
+            if (ends && is_stroke(group) && group.beyond != 0u) {
+                alike = for_each;
+                group.before = group.from;
+                ends = false;
+                --at;
+            } else
+#endif
+            if (!ends) {
+                alike = read_point(group, word);
+                if (alike != for_each) group.covered = is_stroke(group) ? group.covered | alike : group.covered ^ alike;
+            }
             ++at;
-            if (is_header(word)) {
+            if (ends) {
 #ifdef STYLES
                 add_group(samples, open, group, cell, local, foot);
 #else
@@ -338,16 +407,16 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
 #endif
                 group = group_of(word, bias, local, foot);
                 ended = word == LIST_END || samples.open == 0u;
-            } else {
-                alike = read_point(group, word);
-                if (alike != for_each) group.covered = group.line ? group.covered | alike : group.covered ^ alike;
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
 #ifdef PARTS
-            if (group.line) group.covered |= styled_mask(group, group.before, group.from);
+            if (is_stroke(group)) group.covered |= styled_mask(group, group.before, group.from);
 #else
-            if (group.line) group.covered |= stroke_mask(group, group.before, group.from);
+            if (is_stroke(group)) {
+                add_edge(group, group.before, group.from, !is_header(word) && !starts_edge(word));
+                if (!is_header(word) && starts_edge(word)) group.beyond = all_samples;
+            }
 #endif
             else group.covered ^= crossing_mask(crossing_of(group, group.before, group.from));
         }

@@ -42,12 +42,16 @@ Classed classed_cell(Cell cell, vec2 local, mat2 foot) {
         ++at;
         if (is_header(word)) {
             alike = add_alike(sum, open, group);
+#ifndef PARTS
+            // A point without an edge is a disc.
+            alike = alike && group.beyond == 0u;
+#endif
             group = group_of(word, bias, local, foot);
             ended = word == LIST_END || sum.a >= 0.999;
         } else {
             uint mask = read_point(group, word);
             alike = mask != for_each;
-            if (alike) group.covered = group.line ? group.covered | mask : group.covered ^ mask;
+            if (alike) group.covered = is_stroke(group) ? group.covered | mask : group.covered ^ mask;
         }
     } while (alike && !ended);
     return Classed(alike ? CLASS_DONE : CLASS_CELLS, sum);

@@ -7,6 +7,7 @@
 #include "gl/gl.h"
 #include "gl/texture.h"
 #include "technique/static_decals/area_classes.h"
+#include "technique/static_decals/half_planes.h"
 #include "technique/static_decals/levels.h"
 
 namespace decalgl {
@@ -98,8 +99,10 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
     upload_styles(next.get(), next_lens.get());
     refresh_levels(prepared_.get(), next.get(), levels_);
     refresh_levels(lens_.get(), next_lens.get(), lens_levels_);
-    if (!no_vertices_)
+    if (!no_vertices_) {
+        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_R32UI, make_half_planes());
         no_vertices_ = gl::VertexArray::create();
+    }
     prepared_ = std::move(next);
     lens_ = std::move(next_lens);
 }
@@ -169,8 +172,8 @@ UpdateReport StaticDecals::update(const View& view) {
     UpdateReport report;
     report.pieces = prepared_->pieces;
     report.bytes = buckets_.buffer().bytes() + cells_.bytes() + texels_.bytes() + styles_.buffer().bytes() +
-                   kinds_.buffer().bytes() + style_records_.buffer().bytes() + levels_.bytes() +
-                   lens_levels_.bytes();
+                   kinds_.buffer().bytes() + style_records_.buffer().bytes() + half_planes_.buffer().bytes() +
+                   levels_.bytes() + lens_levels_.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
@@ -270,6 +273,10 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     texels_.bind(4);
     program.set("decal_styles", 5);
     styles_.bind(5);
+    if (sees_area) {
+        program.set("half_planes", 11);
+        half_planes_.bind(11);
+    }
     if (has_styles(*prepared_) || flags.count("THOENY") != 0) {
         program.set("decal_kinds", 7);
         kinds_.bind(7);

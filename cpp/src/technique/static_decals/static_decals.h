@@ -49,7 +49,8 @@ private:
     GrowingBuffer texels_;
     gl::TextureBuffer styles_;  // those inside the lens follow the others
     gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
-    gl::Texture2D levels_;  // made by the first view that needs them
+    gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
+    gl::Texture2D levels_;                     // made by the first view that needs them
     gl::Texture2D lens_levels_;
     bool draws_levels_ = false;
     gl::VertexArray no_vertices_;

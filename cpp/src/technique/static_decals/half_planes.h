@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace decalgl {
+
+// The table of shaders/technique/static_decals/half_planes.glsl: row by row, a bit a sample. A row more than there
+// are turns, for the direction that is the opposite of the first.
+std::vector<uint32_t> make_half_planes();
+
+}  // namespace decalgl
