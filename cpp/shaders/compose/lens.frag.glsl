@@ -1,5 +1,6 @@
 // The lens's mask: the share of a pixel that is inside, as if its border were straight there, and whether its centre is.
 //
+// GATHERED   samples of pixels from anywhere in the picture
 // ON_MAP   rings on the map, inside by the even-odd rule; else a circle on the screen
 #include "shared/ray.glsl"
 #include "shared/position.glsl"
@@ -43,7 +44,7 @@ void main() {
 }
 #else
 void main() {
-    float apart = length(gl_FragCoord.xy + vec2(picture.xy) - circle.xy);
+    float apart = length(pixel_from_centre() + 0.5 * spacing.zw - circle.xy);
     mask = mask_of(apart <= circle.z, abs(circle.z - apart));
 }
 #endif

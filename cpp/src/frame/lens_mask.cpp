@@ -20,8 +20,8 @@ void LensMask::upload_edges(const PositionGrid& positions, const MemoryAccount& 
 }
 
 void LensMask::draw(const std::shared_ptr<const Lens>& lens, const PictureRequest& request,
-                    const PositionGrid& positions, const GBuffer& gbuffer, gl::ProgramLibrary& programs,
-                    const MemoryAccount& memory) {
+                    const PositionGrid& positions, const GBuffer& gbuffer, const Silhouettes* gathered,
+                    gl::ProgramLibrary& programs, const MemoryAccount& memory) {
     if (!mask_ || mask_.width() != gbuffer.width() || mask_.height() != gbuffer.height()) {
         mask_ = gl::Texture2D::create(memory, "frame: lens", GL_RG8, gbuffer.width(), gbuffer.height());
         framebuffer_ = gl::Framebuffer::create("lens", {{GL_COLOR_ATTACHMENT0, &mask_}});
@@ -29,9 +29,16 @@ void LensMask::draw(const std::shared_ptr<const Lens>& lens, const PictureReques
     }
     const bool is_new = lens_ != lens;
     lens_ = lens;
-    gl::Program& program = programs.get("lens", lens->is_on_map() ? gl::Flags{"ON_MAP"} : gl::Flags{});
+    gl::Flags flags;
+    if (lens->is_on_map())
+        flags.insert("ON_MAP");
+    if (gathered != nullptr)
+        flags.insert("GATHERED");
+    gl::Program& program = programs.get("lens", flags);
     framebuffer_.bind();
     program.use();
+    if (gathered != nullptr)
+        gathered->set_gathered(program);
     if (lens->is_on_map()) {
         if (is_new)
             upload_edges(positions, memory);

@@ -7,6 +7,7 @@
 #include "decalgl/frame/lens.h"
 #include "decalgl/frame/picture_request.h"
 #include "frame/gbuffer.h"
+#include "frame/silhouettes.h"
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
@@ -21,10 +22,10 @@ std::vector<LensEdge> edges_of(const Lens& lens);
 
 class LensMask {
 public:
-    // Draws the mask of the rectangle that the G-buffer holds.
+    // Draws the mask of what the G-buffer holds: a rectangle, or samples that `gathered` tells the places of.
     void draw(const std::shared_ptr<const Lens>& lens, const PictureRequest& request,
-              const PositionGrid& positions, const GBuffer& gbuffer, gl::ProgramLibrary& programs,
-              const MemoryAccount& memory);
+              const PositionGrid& positions, const GBuffer& gbuffer, const Silhouettes* gathered,
+              gl::ProgramLibrary& programs, const MemoryAccount& memory);
     const gl::Texture2D& texture() const { return mask_; }
 
 private:

@@ -236,8 +236,11 @@ GBufferView Pipeline::look_through_lens(const SeenTargets& seen) {
     if (!has_lens())
         return view;
     const gl::PassTimer timer(&timings_, "lens");
-    lens_mask_.draw(scene_->lens, request_, scene_->positions, seen.gbuffer, programs_, memory_);
-    view.lens = &lens_mask_.texture();
+    const bool is_gathered = &seen != &targets_->seen;
+    LensMask& mask = is_gathered ? gathered_lens_mask_ : lens_mask_;
+    mask.draw(scene_->lens, request_, scene_->positions, seen.gbuffer,
+              is_gathered ? silhouettes_.get() : nullptr, programs_, memory_);
+    view.lens = &mask.texture();
     return view;
 }
 
@@ -252,8 +255,7 @@ std::vector<uint8_t> Pipeline::draw_image() {
             const gl::PassTimer timer(&timings_, "readback");
             read_shown(targets_->picture_framebuffer, GL_COLOR_ATTACHMENT0, GL_RGBA8, piece, image);
         }
-        // The lens is known for the pixels of the picture alone.
-        if (silhouettes_ && !has_lens())
+        if (silhouettes_)
             redraw_silhouettes(piece, image);
     }
     gl::check_errors("drawing the picture");

@@ -105,6 +105,7 @@ private:
     uint64_t silhouette_pixels_ = 0;
 
     LensMask lens_mask_;
+    LensMask gathered_lens_mask_;
     std::unique_ptr<Targets> targets_;
     std::unique_ptr<Silhouettes> silhouettes_;  // with coverage
     const Piece* at_centres_ = nullptr;         // the piece whose pixel centres the G-buffer holds, if any
