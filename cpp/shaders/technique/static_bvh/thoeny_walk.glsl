@@ -1,10 +1,11 @@
 // Lines by their coverage of the pixel in place of points of it (Thöny et al. 2018, section 3.5).
 //
 // The boxes of trees and cells are tested against the pixel's, so that lines are found which its centre does not
-// lie on. A pixel looks into all cells that it reaches into, up to four beyond its centre's. With NEAREST only the nearest line
-// shows; else those that cover any of the pixel are laid over each other, of more than eight the topmost.
+// lie on. A pixel looks into all cells that it reaches into, up to a thousand around its centre's. With NEAREST only the nearest
+// line shows; else those that cover any of the pixel are laid over each other, of more than eight the topmost.
 const uint no_line = 0xFFFFFFFFu;
-const int most_cells = 4;
+const int far_cells = 16;     // beyond the centre's cell, on each side
+const int spare_cells = 512;  // the same where the other side needs but one cell
 #ifdef NEAREST
 const int most_lines = 1;
 #else
@@ -106,8 +107,12 @@ vec4 lines_at(ivec2 point, mat2 foot) {
     ivec2 centre = clamp((point - grid_box.xy) / cell_size, ivec2(0), last);
     Search search;
     search.box = ivec4(point - half_pixel, point + half_pixel);
-    search.low = max(clamp((search.box.xy - grid_box.xy) / cell_size, ivec2(0), last), centre - most_cells);
-    search.high = min(clamp((search.box.zw - grid_box.xy) / cell_size, ivec2(0), last), centre + most_cells);
+    search.low = clamp((search.box.xy - grid_box.xy) / cell_size, ivec2(0), last);
+    search.high = clamp((search.box.zw - grid_box.xy) / cell_size, ivec2(0), last);
+    // The cells of a level line are much lower than wide.
+    ivec2 most = max(ivec2(far_cells), spare_cells / (search.high - search.low + 1).yx);
+    search.low = max(search.low, centre - most);
+    search.high = min(search.high, centre + most);
     search.place = search.low;
     enter(search);
     int object = -1;
