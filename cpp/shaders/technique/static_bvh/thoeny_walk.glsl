@@ -1,11 +1,12 @@
 // Lines by their coverage of the pixel in place of points of it (Thöny et al. 2018, section 3.5).
 //
 // The boxes of trees and cells are tested against the pixel's, so that lines are found which its centre does not
-// lie on. A pixel looks into all cells that it reaches into, up to a thousand around its centre's. With NEAREST only the nearest
-// line shows; else those that cover any of the pixel are laid over each other, of more than eight the topmost.
+// lie on. A pixel looks into all cells that it reaches into, up to four thousand around its centre's. With NEAREST
+// only the nearest line shows; else those that cover any of the pixel are laid over each other, of more than eight
+// the topmost.
 const uint no_line = 0xFFFFFFFFu;
-const int far_cells = 16;     // beyond the centre's cell, on each side
-const int spare_cells = 512;  // the same where the other side needs but one cell
+const int far_cells = 32;      // beyond the centre's cell, on each side
+const int spare_cells = 2048;  // the same where the other side needs but one cell
 #ifdef NEAREST
 const int most_lines = 1;
 #else
