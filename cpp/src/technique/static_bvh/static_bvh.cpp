@@ -6,7 +6,6 @@
 
 #include "decalgl/core/error.h"
 #include "gl/gl.h"
-#include "gl/texture.h"
 
 namespace decalgl {
 
@@ -16,8 +15,8 @@ using bvh::GroupKind;
 
 constexpr int sample_count = 32;  // shared/sample_offsets.glsl
 constexpr int no_sample = -1;
-// Samples are drawn in strips of the picture, so that they take no more memory than this many pixels.
-constexpr int pixels_at_once = 1 << 19;
+// Samples are drawn in strips of the picture, so that all that is kept of a strip is no more than this many pixels.
+constexpr int pixels_at_once = 1 << 20;
 
 // Whether lines are drawn by how much of a pixel they cover, and not by samples.
 bool by_coverage(const View& view, const bvh::DecalGroup& group) {
@@ -115,20 +114,46 @@ void StaticBvh::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLi
     const GLfloat nothing[] = {0.0F, 0.0F, 0.0F, 0.0F};
     glClearBufferfv(GL_COLOR, 0, nothing);
     glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     const bool in_samples =
         std::any_of(prepared_->groups.begin(), prepared_->groups.end(),
                     [&](const bvh::DecalGroup& group) { return !by_coverage(view, group); });
     if (view.antialias == Antialias::coverage && in_samples)
         draw_samples(view, gbuffer, programs);
     else
-        draw_groups({}, {0, no_sample}, view, gbuffer, programs);
+        draw_groups(0, buffers_.size(), {}, {0, no_sample}, view, gbuffer, programs);
     glDisable(GL_BLEND);
 }
 
 void StaticBvh::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const GLuint nothing[] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    draw_groups({"IDS"}, {0, no_sample}, view, gbuffer, programs);
+    draw_groups(0, buffers_.size(), {"IDS"}, {0, no_sample}, view, gbuffer, programs);
+}
+
+// Neighbouring groups that are drawn in the same way: by coverage, or in samples.
+struct StaticBvh::Run {
+    size_t begin, end;
+    bool by_coverage;
+    Canvas canvas;  // by coverage: their picture, which all samples share
+};
+
+StaticBvh::Canvas StaticBvh::canvas(int width, int height) const {
+    Canvas made;
+    made.picture = gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, height);
+    made.target = gl::Framebuffer::create("samples", {{GL_COLOR_ATTACHMENT0, &made.picture}});
+    return made;
+}
+
+std::vector<StaticBvh::Run> StaticBvh::runs_of(const View& view) const {
+    std::vector<Run> runs;
+    for (size_t i = 0; i < buffers_.size(); ++i) {
+        const bool coverage = by_coverage(view, prepared_->groups[i]);
+        if (runs.empty() || runs.back().by_coverage != coverage)
+            runs.push_back({i, i, coverage, {}});
+        runs.back().end = i + 1;
+    }
+    return runs;
 }
 
 // All groups for one sample of every pixel, over each other; then the next. So the mean is that of the
@@ -137,43 +162,58 @@ void StaticBvh::draw_samples(const View& view, const GBufferView& gbuffer, gl::P
     GLint target = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
     const int width = gbuffer.position->width(), height = gbuffer.position->height();
-    const int rows = std::clamp(pixels_at_once / width, 1, height);
-    const gl::Texture2D sample =
-        gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, rows);
-    const gl::Texture2D sum = gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, rows);
-    const gl::Framebuffer one = gl::Framebuffer::create("sample", {{GL_COLOR_ATTACHMENT0, &sample}});
-    const gl::Framebuffer all = gl::Framebuffer::create("samples", {{GL_COLOR_ATTACHMENT0, &sum}});
-    const auto add = [&](const gl::Texture2D& from, int first_row, float share) {
+    std::vector<Run> runs = runs_of(view);
+    const auto kept = std::count_if(runs.begin(), runs.end(), [](const Run& run) { return run.by_coverage; });
+    const int rows = std::clamp(pixels_at_once / width / static_cast<int>(2 + kept), 1, height);
+    const Canvas sample = canvas(width, rows), sum = canvas(width, rows);
+    for (Run& run : runs)
+        if (run.by_coverage)
+            run.canvas = canvas(width, rows);
+    const auto lay = [&](const Canvas& from, int first_row, float share) {
         gl::Program& program = programs.get("static_bvh_mean");
         program.use();
         program.set("samples", 0);
-        from.bind(0);
+        from.picture.bind(0);
         program.set("first_row", first_row);
         program.set("share", share);
         no_vertices_.bind();
         glDrawArrays(GL_TRIANGLES, 0, 3);
     };
+    const auto begin = [](const Canvas& canvas) {
+        canvas.target.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
+        canvas.target.bind();
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    };
     for (int row = 0; row < height; row += rows) {
-        all.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
+        for (const Run& run : runs) {
+            if (!run.by_coverage)
+                continue;
+            begin(run.canvas);
+            draw_groups(run.begin, run.end, {}, {row, no_sample}, view, gbuffer, programs);
+        }
+        begin(sum);
         for (int i = 0; i < sample_count; ++i) {
-            one.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
-            one.bind();
-            draw_groups({"SAMPLE"}, {row, i}, view, gbuffer, programs);
-            all.bind();
+            begin(sample);
+            for (const Run& run : runs) {
+                if (run.by_coverage)
+                    lay(run.canvas, 0, 1.0F);
+                else
+                    draw_groups(run.begin, run.end, {"SAMPLE"}, {row, i}, view, gbuffer, programs);
+            }
+            sum.target.bind();
             glBlendFunc(GL_ONE, GL_ONE);
-            add(sample, 0, 1.0F / sample_count);
+            lay(sample, 0, 1.0F / sample_count);
         }
         glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
         glViewport(0, row, width, std::min(rows, height - row));
-        add(sum, row, 1.0F);
+        lay(sum, row, 1.0F);
     }
     glViewport(0, 0, width, height);
 }
 
-void StaticBvh::draw_groups(const gl::Flags& flags, Strip strip, const View& view, const GBufferView& gbuffer,
-                            gl::ProgramLibrary& programs) {
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (size_t group = 0; group < buffers_.size(); ++group)
+void StaticBvh::draw_groups(size_t begin, size_t end, const gl::Flags& flags, Strip strip, const View& view,
+                            const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+    for (size_t group = begin; group < end; ++group)
         draw_group(group, flags, strip, view, gbuffer, programs);
 }
 
@@ -206,7 +246,6 @@ void StaticBvh::draw_group(size_t index, gl::Flags flags, Strip strip, const Vie
     const bvh::Lattice& lattice = prepared_->lattice;
     flags.merge(flags_of(group));
     if (flags.count("IDS") == 0 && by_coverage(view, group)) {
-        flags.erase("SAMPLE");
         flags.erase("UNSORTED");
         flags.insert("THOENY");
     }

@@ -4,6 +4,7 @@
 #include "decalgl/technique/technique.h"
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "technique/static_bvh/prepared_bvh.h"
 
@@ -35,9 +36,19 @@ private:
         int sample;
     };
 
+    // A picture to be drawn into and to be drawn.
+    struct Canvas {
+        gl::Texture2D picture;
+        gl::Framebuffer target;
+    };
+
+    struct Run;
+
+    Canvas canvas(int width, int height) const;
+    std::vector<Run> runs_of(const View& view) const;
     void draw_samples(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
-    void draw_groups(const gl::Flags& flags, Strip strip, const View& view, const GBufferView& gbuffer,
-                     gl::ProgramLibrary& programs);
+    void draw_groups(size_t begin, size_t end, const gl::Flags& flags, Strip strip, const View& view,
+                     const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     void draw_group(size_t group, gl::Flags flags, Strip strip, const View& view, const GBufferView& gbuffer,
                     gl::ProgramLibrary& programs);
     gl::Flags flags_of(const bvh::DecalGroup& group) const;
