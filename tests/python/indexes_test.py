@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from shapely import box
+from shapely import LineString, box
 
 import decalgl as dg
 import judge
@@ -311,8 +311,21 @@ def test_coverage_by_estimate_takes_no_longer_than_by_samples() -> None:
 def test_coverage_is_one_that_there_is() -> None:
     with pytest.raises(dg.InputError, match="There is no coverage='msaa'; choose 'exact' or 'thoeny'"):
         dg.Renderer(coverage="msaa", index="bvh")
-    with pytest.raises(dg.UnsupportedError, match="Coverage 'thoeny' is not drawn with index 'grid'"):
-        dg.Renderer(coverage="thoeny")
+
+
+def test_coverage_by_estimate_is_the_same_in_both_indexes() -> None:
+    scene = flat_scene()
+    scene.add_polygons([box(60, 55, 90, 85)], color="seagreen", alpha=0.6)
+    for i, width in enumerate((0.3, 1.0, 2.5, 6.0)):
+        line = LineString([(5, 10 + 11 * i), (55, 14 + 14 * i), (95, 8 + 9 * i)])
+        scene.add_lines([line], width=width, width_units="m", color="navy")
+    images = []
+    for index in ("grid", "bvh"):
+        renderer = dg.Renderer(size=(200, 200), coverage="thoeny", index=index)
+        renderer.preprocess(scene)
+        renderer.update(dg.Camera.top_down((0, 0, 100, 100)))
+        images.append(renderer.render(background="white").image.astype(int))
+    assert (np.abs(images[0] - images[1]).max(axis=-1) > 4).mean() <= 1e-3
 
 
 # Styles

@@ -12,6 +12,7 @@ import pytest
 from shapely import LineString, Point, Polygon, box
 
 import decalgl as dg
+from judge import eroded
 from small_scenes import BLUE, GREEN, MAP, OBLIQUE, RED, SIZE, count_color, flat_scene, hilly_scene, pixel
 
 if TYPE_CHECKING:
@@ -127,9 +128,12 @@ def test_widths_change_up_to_the_prepared_maximum(antialias: str) -> None:
         renderer = prepared(wide, antialias)
         renderer.restyle("ways", width=width)
         frame = renderer.render()
-        expected = prepared(scene_of(PLAIN, {"color": "navy", "width": width}), antialias).render()
+        ways = {"color": "navy", "width": width}
+        # Of the same widest lines, so that vertices are rounded alike.
+        same = prepared(scene_of(PLAIN, ways, widest=9.0), antialias).render()
+        assert np.abs(frame.image.astype(int) - same.image).max() <= 1
+        expected = prepared(scene_of(PLAIN, ways), antialias).render()
         np.testing.assert_array_equal(frame.ids, expected.ids)
-        assert np.abs(frame.image.astype(int) - expected.image).max() <= 1
         assert picks(frame) == picks(expected)
 
 
@@ -273,8 +277,11 @@ def test_a_lens_on_the_map_lies_on_the_terrain(antialias: str) -> None:
         within[tuple(index)] = shape.contains(point)
     far = distance > 3.0
     assert (far & within).any()
+    # Where a pixel sees two surfaces, both may be on other sides of the border: all neighbours must be on one.
     for part, expected in ((far & within, inside), (far & ~within, outside)):
-        np.testing.assert_array_equal(frame.image[part], expected.image[part])
+        alike = eroded(part, 1)
+        assert alike.any()
+        np.testing.assert_array_equal(frame.image[alike], expected.image[alike])
     np.testing.assert_array_equal(frame.ids, outside.ids)
 
 
