@@ -301,9 +301,7 @@ class Scene:
         widest = WIDEST_LINE * (max(x1 - x0, y1 - y0) or 1.0)
         resolved = looks.resolve(LayerRows(name, attributes, table.rows, widest))
         draw_order = draw_order_of(order, table, attributes)
-        layer = Layer(
-            name, len(self._layers), table, draw_order, **vars(resolved), attributes=attributes
-        )
+        layer = Layer(name, len(self._layers), table, draw_order, **vars(resolved), attributes=attributes)
         if layer.coloring.legend:
             require_drawable(layer)
         self._layers.append(layer)

@@ -67,8 +67,8 @@ public:
     SharedArray<DecalStyle> styles;
     SharedArray<uint32_t> kinds;  // of each slot, as style_records.h says; empty where all are plain
     SharedArray<StyleTexel> style_records;
-    SharedArray<Decal> slots;     // as prepared, topmost first
-    SharedArray<uint32_t> ranks;  // of each slot in draw order, topmost 0, where it is another; else empty
+    SharedArray<Decal> slots;       // as prepared, topmost first
+    SharedArray<uint32_t> ranks;    // of each slot in draw order, topmost 0, where it is another; else empty
     SharedArray<LayerRules> rules;  // by the layer's place in the scene
     uint64_t segments = 0;
     uint64_t pieces = 0;

@@ -47,7 +47,7 @@ private:
     gl::TextureBuffer buckets_;
     GrowingBuffer cells_;
     GrowingBuffer texels_;
-    gl::TextureBuffer styles_;  // those inside the lens follow the others
+    gl::TextureBuffer styles_;                 // those inside the lens follow the others
     gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
     gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
     gl::Texture2D levels_;                     // made by the first view that needs them

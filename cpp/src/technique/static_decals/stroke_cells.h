@@ -40,7 +40,7 @@ public:
 private:
     struct Edge {
         LatticePoint a, b;
-        double periods;  // at a
+        double periods;         // at a
         bool restarts = false;  // the pattern goes on from another place
     };
 
