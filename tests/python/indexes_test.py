@@ -325,7 +325,7 @@ def test_coverage_by_estimate_is_the_same_in_both_indexes() -> None:
         renderer.preprocess(scene)
         renderer.update(dg.Camera.top_down((0, 0, 100, 100)))
         images.append(renderer.render(background="white").image.astype(int))
-    # The grid sees pixels that lie within a stroke, or beside it, as such; the estimate errs there by up to a twentieth.
+    # The grid sees pixels within a stroke, or beside it, as such; the estimate errs there by up to a twentieth.
     assert np.abs(images[0] - images[1]).max() <= 0.06 * 255
 
 

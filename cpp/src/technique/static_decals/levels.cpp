@@ -28,14 +28,14 @@ int samples_across(const PreparedDecals& decals, int level) {
 }
 
 // The samples of one cell: `side` x `side`, each somewhere in its own square.
-CellPoints samples_of(int level, int side) {
-    CellPoints cell;
+CellPoints<float> samples_of(int level, int side) {
+    CellPoints<float> cell;
     cell.level = level;
-    const double step = static_cast<double>(cell_quanta(level)) / side;
+    const float step = static_cast<float>(cell_quanta(level)) / static_cast<float>(side);
     for (int i = 0; i < side * side; ++i) {
         const auto seed = static_cast<uint32_t>(i + 97 * level);
-        cell.points.push_back({(i % side + double{scattered(2 * seed)}) * step,
-                               (i / side + double{scattered(2 * seed + 1)}) * step});
+        cell.x.push_back((static_cast<float>(i % side) + scattered(2 * seed)) * step);
+        cell.y.push_back((static_cast<float>(i / side) + scattered(2 * seed + 1)) * step);
     }
     return cell;
 }
@@ -45,14 +45,14 @@ struct Color {
 };
 
 // Composes the decals of one cell for its samples, front to back.
-void compose(const PreparedDecals& decals, const CellPoints& cell, uint32_t list,
+void compose(const PreparedDecals& decals, ListReader<float>& reader, uint32_t list,
              std::vector<Color>& colors) {
-    colors.assign(cell.points.size(), Color());
-    const auto add = [&](uint32_t slot, const StyleReader& style, const std::vector<double>& shares) {
+    std::fill(colors.begin(), colors.end(), Color());
+    const auto add = [&](uint32_t slot, const StyleReader& style, const std::vector<float>& shares) {
         for (size_t i = 0; i < shares.size(); ++i) {
-            if (shares[i] > 1.0)
+            if (shares[i] > 1.0F)
                 continue;
-            const std::array<uint8_t, 4> bytes = style.color(decals.styles[slot].color, shares[i]);
+            const std::array<uint8_t, 4> bytes = style.color(decals.styles[slot].color, double{shares[i]});
             const float weight = (1.0F - colors[i].a) * static_cast<float>(bytes[3]) / 255.0F;
             colors[i].r += weight * static_cast<float>(bytes[0]);
             colors[i].g += weight * static_cast<float>(bytes[1]);
@@ -60,7 +60,7 @@ void compose(const PreparedDecals& decals, const CellPoints& cell, uint32_t list
             colors[i].a += weight;
         }
     };
-    ListReader(decals, cell).read(decals.list(list), add);
+    reader.read(decals.list(list), add);
 }
 
 using BucketTexels = std::array<Color, LEVEL_TEXELS * LEVEL_TEXELS>;
@@ -84,17 +84,18 @@ void draw_bucket(const PreparedDecals& decals, uint32_t bucket, BucketTexels& te
     const uint32_t entry = decals.bucket_entries[bucket];
     const int level = static_cast<int>(entry & ((1U << LEVEL_BITS) - 1));
     const int side = samples_across(decals, level);
-    CellPoints cell = samples_of(level, side);
+    CellPoints<float> cell = samples_of(level, side);
     cell.bucket_column = bucket % static_cast<uint32_t>(decals.grid.columns);
     cell.bucket_row = bucket / static_cast<uint32_t>(decals.grid.columns);
-    std::vector<Color> colors;
+    ListReader<float> reader(decals, cell);
+    std::vector<Color> colors(cell.x.size());
     for (int i = 0; i < 1 << (2 * level); ++i) {
         const uint32_t list = decals.cells[(entry >> LEVEL_BITS) + static_cast<uint32_t>(i)];
         if (list == EMPTY_LIST)
             continue;
         const int column = i & ((1 << level) - 1), row = i >> level;
         cell.corner = {double(column) * cell_quanta(level), double(row) * cell_quanta(level)};
-        compose(decals, cell, list, colors);
+        compose(decals, reader, list, colors);
         if (side == 1 && level == 0)
             texels.fill(colors[0]);
         else

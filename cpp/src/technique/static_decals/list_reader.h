@@ -1,5 +1,5 @@
-// Reads the list of a cell for some points in it at once: the walk of point.glsl on the CPU, in double precision and to
-// the end.
+// Reads the list of a cell for some points in it at once: the walk of point.glsl on the CPU, to the end. In double precision
+// for picking, in single for the many points of levels of detail.
 #pragma once
 
 #include <vector>
@@ -9,22 +9,26 @@
 namespace decalgl {
 
 // A cell, and points in quanta from its corner.
+template <typename Real>
 struct CellPoints {
     int level = 0;
     int64_t bucket_column = 0, bucket_row = 0;
     PlanePoint corner{};  // of the cell, in quanta from that of its bucket
-    std::vector<PlanePoint> points;
+    std::vector<Real> x, y;
 };
 
+template <typename Real>
 class ListReader {
 public:
-    ListReader(const PreparedDecals& decals, const CellPoints& cell)
+    // The cell's place may change between lists, its level and its points may not.
+    ListReader(const PreparedDecals& decals, const CellPoints<Real>& cell)
         : decals_(decals),
           cell_(cell),
-          bias_(cell_bias(cell.level)),
-          at_(cell.points.size()),
-          shares_(cell.points.size()),
-          open_(cell.points.size()) {}
+          bias_(static_cast<Real>(cell_bias(cell.level))),
+          at_x_(cell.x.size()),
+          at_y_(cell.x.size()),
+          shares_(cell.x.size()),
+          open_(cell.x.size()) {}
 
     // Calls on_group(slot, shares) for the decals of a list, topmost first. A share is that of the half width at which
     // the stroke covers the point, 0 where a fill does, and above 1 where nothing does.
@@ -55,10 +59,15 @@ private:
         is_clip_ = (header & CLIP) != 0;
         style_ = StyleReader(decals_, slot_);
         has_came_ = awaits_phase_ = false;
-        std::fill(shares_.begin(), shares_.end(), (header & COVERS) != 0 ? 0.0 : not_covered);
-        const double unit = is_line_ ? std::ldexp(1.0, -style_.scale()) : 1.0;
-        for (size_t i = 0; i < at_.size(); ++i)
-            at_[i] = {cell_.points[i].x * unit + bias_, cell_.points[i].y * unit + bias_};
+        std::fill(shares_.begin(), shares_.end(), (header & COVERS) != 0 ? Real(0) : none_);
+        const Real unit = is_line_ ? std::ldexp(Real(1), -style_.scale()) : Real(1);
+        if (unit == unit_)
+            return;
+        unit_ = unit;
+        for (size_t i = 0; i < shares_.size(); ++i) {
+            at_x_[i] = cell_.x[i] * unit + bias_;
+            at_y_[i] = cell_.y[i] * unit + bias_;
+        }
     }
 
     void read_point(uint32_t word) {
@@ -84,27 +93,33 @@ private:
         from_ = to;
     }
 
+    PlanePoint at(size_t point) const { return {double{at_x_[point]}, double{at_y_[point]}}; }
+
     void cover(size_t point, double share, double width) {
         if (share <= width)
-            shares_[point] = std::min(shares_[point], share);
+            shares_[point] = std::min(shares_[point], static_cast<Real>(share));
     }
 
     void add_capsule(PlanePoint from, PlanePoint to) {
-        const PlanePoint along = to - from;
-        const double length2 = dot(along, along);
-        for (size_t i = 0; i < at_.size(); ++i) {
-            const PlanePoint past = at_[i] - from;
-            const double t = length2 > 0.0 ? std::clamp(dot(past, along) / length2, 0.0, 1.0) : 0.0;
-            const PlanePoint apart{past.x - t * along.x, past.y - t * along.y};
-            cover(i, std::sqrt(dot(apart, apart)) / style_.half_width(), 1.0);
+        const auto x0 = static_cast<Real>(from.x), y0 = static_cast<Real>(from.y);
+        const auto dx = static_cast<Real>(to.x - from.x), dy = static_cast<Real>(to.y - from.y);
+        const auto radius = static_cast<Real>(style_.half_width());
+        const Real per_length2 = 1 / std::max(dx * dx + dy * dy, Real(1e-6)), radius2 = radius * radius;
+        const bool has_bands = style_.is(STYLE_BANDS);
+        for (size_t i = 0; i < shares_.size(); ++i) {
+            const Real px = at_x_[i] - x0, py = at_y_[i] - y0;
+            const Real t = std::clamp((px * dx + py * dy) * per_length2, Real(0), Real(1));
+            const Real ex = px - t * dx, ey = py - t * dy, apart2 = ex * ex + ey * ey;
+            const Real share = has_bands ? std::sqrt(apart2) / radius : Real(0);
+            shares_[i] = apart2 <= radius2 ? std::min(shares_[i], share) : shares_[i];
         }
     }
 
     void add_joined_edge(PlanePoint to) {
         const PlanePoint along = to - from_;
         const double length = std::sqrt(dot(along, along)), width = style_.width_at(periods_);
-        for (size_t i = 0; i < at_.size(); ++i) {
-            const PlanePoint past = at_[i] - from_;
+        for (size_t i = 0; i < shares_.size(); ++i) {
+            const PlanePoint past = at(i) - from_;
             if (length == 0.0) {
                 cover(i, std::sqrt(dot(past, past)) / style_.half_width(), width);
                 continue;
@@ -125,39 +140,50 @@ private:
 
     // ring_cells.h
     void add_crossing(PlanePoint to) {
-        const bool starts_left = from_.x == bias_, ends_left = to.x == bias_;
-        const double border = starts_left == ends_left ? 1e9 : starts_left ? from_.y : to.y;
-        const PlanePoint low = from_.y <= to.y ? from_ : to, high = from_.y <= to.y ? to : from_;
-        for (size_t i = 0; i < at_.size(); ++i) {
-            const bool on_row =
-                low.y <= at_[i].y && at_[i].y < high.y && cross(high - low, at_[i] - low) <= 0.0;
-            if (on_row != (at_[i].y >= border))
-                shares_[i] = not_covered - shares_[i];
+        const double left = static_cast<double>(bias_);
+        const bool starts_left = from_.x == left, ends_left = to.x == left;
+        const auto border = static_cast<Real>(starts_left == ends_left ? 1e9 : starts_left ? from_.y : to.y);
+        const bool rises = from_.y <= to.y;
+        const auto low_x = static_cast<Real>(rises ? from_.x : to.x),
+                   low_y = static_cast<Real>(rises ? from_.y : to.y);
+        const auto dx = static_cast<Real>(rises ? to.x - from_.x : from_.x - to.x);
+        const auto dy = static_cast<Real>(rises ? to.y - from_.y : from_.y - to.y);
+        for (size_t i = 0; i < shares_.size(); ++i) {
+            const Real px = at_x_[i] - low_x, py = at_y_[i] - low_y;
+            const bool on_row = py >= 0 && py < dy && px * dy >= py * dx;
+            shares_[i] = on_row != (at_y_[i] >= border) ? none_ - shares_[i] : shares_[i];
         }
     }
 
     template <typename OnGroup>
     void end_group(OnGroup on_group) {
         if (is_clip_) {
-            for (size_t i = 0; i < at_.size(); ++i)
-                open_[i] = shares_[i] <= 1.0;
+            for (size_t i = 0; i < shares_.size(); ++i)
+                open_[i] = shares_[i] <= 1;
             return;
         }
         const bool hatched = !is_line_ && style_.is(STYLE_HATCH);
-        for (size_t i = 0; i < at_.size(); ++i) {
-            const PlanePoint inside{cell_.corner.x + cell_.points[i].x, cell_.corner.y + cell_.points[i].y};
-            if (!open_[i] || (hatched && !style_.hatch_covers(cell_.bucket_column, cell_.bucket_row, inside)))
-                shares_[i] = not_covered;
+        for (size_t i = 0; i < shares_.size(); ++i) {
+            if (!open_[i] || (hatched && !is_hatched(i)))
+                shares_[i] = none_;
             open_[i] = true;
         }
         on_group(slot_, style_, shares_);
     }
 
+    bool is_hatched(size_t point) const {
+        return style_.hatch_covers(
+            cell_.bucket_column, cell_.bucket_row,
+            {cell_.corner.x + double{cell_.x[point]}, cell_.corner.y + double{cell_.y[point]}});
+    }
+
+    static constexpr Real none_ = static_cast<Real>(not_covered);
     const PreparedDecals& decals_;
-    const CellPoints& cell_;
-    double bias_;
-    std::vector<PlanePoint> at_;  // the points, in the group's coordinates
-    std::vector<double> shares_;
+    const CellPoints<Real>& cell_;
+    Real bias_;
+    Real unit_ = 0;
+    std::vector<Real> at_x_, at_y_;  // the points, in the group's coordinates
+    std::vector<Real> shares_;
     std::vector<char> open_;  // not cut off by the clip before
     uint32_t slot_ = 0;
     bool is_line_ = false, is_clip_ = false, has_came_ = false, awaits_phase_ = false;

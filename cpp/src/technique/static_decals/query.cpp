@@ -7,7 +7,7 @@ namespace decalgl {
 namespace {
 
 // The cell of a position, and its list; false outside the grid.
-bool locate(const PreparedDecals& decals, double x, double y, CellPoints& cell, uint32_t& entry) {
+bool locate(const PreparedDecals& decals, double x, double y, CellPoints<double>& cell, uint32_t& entry) {
     const BucketGrid& grid = decals.grid;
     const double bucket_x = (x - grid.left()) / grid.bucket_size;
     const double bucket_y = (y - grid.bottom()) / grid.bucket_size;
@@ -24,7 +24,8 @@ bool locate(const PreparedDecals& decals, double x, double y, CellPoints& cell, 
     const auto index = static_cast<uint32_t>(row) << cell.level | static_cast<uint32_t>(column);
     entry = decals.cells[(bucket >> LEVEL_BITS) + index];
     cell.corner = {column * quanta, row * quanta};
-    cell.points = {{(cell_x - column) * quanta, (cell_y - row) * quanta}};
+    cell.x = {(cell_x - column) * quanta};
+    cell.y = {(cell_y - row) * quanta};
     return true;
 }
 
@@ -38,16 +39,17 @@ Span<const uint32_t> PreparedDecals::list(uint32_t cell_entry) const {
 
 std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
     std::vector<FeatureReference> found;
-    CellPoints cell;
+    CellPoints<double> cell;
     uint32_t entry = 0;
     if (!locate(*this, x, y, cell, entry))
         return found;
-    ListReader(*this, cell).read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares) {
-        const FeatureReference feature = slots[slot].feature;
-        if (shares[0] <= 1.0 && styles[slot].color[3] != 0 &&
-            std::find(found.begin(), found.end(), feature) == found.end())
-            found.push_back(feature);
-    });
+    ListReader<double>(*this, cell)
+        .read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares) {
+            const FeatureReference feature = slots[slot].feature;
+            if (shares[0] <= 1.0 && styles[slot].color[3] != 0 &&
+                std::find(found.begin(), found.end(), feature) == found.end())
+                found.push_back(feature);
+        });
     return found;
 }
 
