@@ -68,4 +68,6 @@ RATIOS = {
     ),
     "opaque_stack": Ratio("{opaque_ms:.1f} ms ÷ side by side {disjoint_ms:.1f} ms", most=2.0),
     "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
+    "style": Ratio("{style_ms:.1f} ms ÷ plain {plain_ms:.1f} ms"),
+    "mode": Ratio("frames of {mode_ms:.0f} ms ÷ {none_ms:.0f} ms"),
 }

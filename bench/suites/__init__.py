@@ -10,13 +10,14 @@ layers       layer, empty: what does one more layer cost, and none?
 interior     interior: what does the inside of a large polygon cost?
 stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
+styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import files, indexes, interior, layers, memory, prepare, ring, scale, stacks, views
+from . import files, indexes, interior, layers, memory, prepare, ring, scale, stacks, styles, views
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,4 +36,5 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "interior": interior.measure,
     "stacks": stacks.measure,
     "ring": ring.measure,
+    "styles": styles.measure,
 }
