@@ -3,8 +3,8 @@
 style    the layers' pass without anti-aliasing ÷ that of plain ones (Zechmeister 2020, figures 5.14 and 5.16)
 mode     a whole frame with a mode of anti-aliasing ÷ one without (his figure 5.9)
 
-Plain are round opaque lines of one width and even opaque fills. Every group of styles takes turns with them, in pictures of a
-quarter of the pixels, as there are many.
+Plain are round opaque lines of one width and even opaque fills. Every group of styles takes turns with
+them, in pictures of a quarter of the pixels, as there are many.
 """
 
 from __future__ import annotations
@@ -55,6 +55,7 @@ FILL_STYLES: dict[str, Looks] = {
 TREE_STYLES = ("miter", "dashed")
 MODES = ("coverage", "fxaa", "msaa", "ssaa")
 SAMPLES = 4
+FEW = 2  # rounds of what takes many passes
 
 
 def measure(work: Workload, records: Records) -> None:
@@ -64,7 +65,7 @@ def measure(work: Workload, records: Records) -> None:
         _styles(work, records, kind, styles, "grid")
         _modes(work, records, kind)
     _styles(work, records, "isolines", {name: LINE_STYLES[name] for name in TREE_STYLES}, "bvh")
-    _tree_coverage(work, records)
+    _slow_coverage(work, records)
 
 
 def _styles(work: Workload, records: Records, kind: str, styles: dict[str, Looks], index: str) -> None:
@@ -84,25 +85,28 @@ def _styles(work: Workload, records: Records, kind: str, styles: dict[str, Looks
 
 def _modes(work: Workload, records: Records, kind: str) -> None:
     work.say(f"{kind}: {', '.join(MODES)}")
-    scene = _scene(work, kind, {})
-    plain = work.renderer(scene, samples=SAMPLES)
-    thoeny = work.renderer(scene, coverage="thoeny")
+    renderer = work.renderer(_scene(work, kind, {}), samples=SAMPLES)
     for view in VIEWS:
-        camera = work.views[view]
-        measures = [drawing(plain, camera, mode, mode) for mode in ("none", *MODES)]
-        times = interleaved(work.runs, *measures, drawing(thoeny, camera, "coverage", "coverage thoeny"))
-        for mode in (*MODES, "coverage thoeny"):
+        measures = [drawing(renderer, work.views[view], mode, mode) for mode in ("none", *MODES)]
+        times = interleaved(min(work.runs, FEW), *measures)
+        for mode in MODES:
             _record_mode(work, records, kind, mode, view, "grid", times)
 
 
-def _tree_coverage(work: Workload, records: Records) -> None:
-    """Once for each view: every picture takes as many walks as it has samples."""
-    work.say("isolines, bvh: coverage")
-    plain = work.renderer(_scene(work, "isolines", {}), "bvh")
-    for view in VIEWS:
-        measures = [drawing(plain, work.views[view], mode, mode) for mode in ("none", "coverage")]
-        times = {name: ms for one in measures for name, ms in one().items()}
-        _record_mode(work, records, "isolines", "coverage", view, "bvh", times)
+def _slow_coverage(work: Workload, records: Records) -> None:
+    """Lines alone, and once: Thöny's, which looks into all cells around, and that of trees, with 32 walks a pixel."""
+    scene = _scene(work, "isolines", {})
+    options: dict[str, tuple[str, Looks]] = {
+        "coverage thoeny": ("grid", {"coverage": "thoeny"}),
+        "coverage": ("bvh", {}),
+    }
+    for mode, (index, chosen) in options.items():
+        work.say(f"isolines, {index}: {mode}")
+        renderer = work.renderer(scene, index, **chosen)
+        for view in VIEWS:
+            none = drawing(renderer, work.views[view], "none", "none")
+            times = interleaved(1, none, drawing(renderer, work.views[view], "coverage", mode))
+            _record_mode(work, records, "isolines", mode, view, index, times)
 
 
 def _record_mode(
