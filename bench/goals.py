@@ -74,4 +74,6 @@ RATIOS = {
     "restyled": Ratio("{restyled_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
     "reorder": Ratio("{reorder_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
     "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
+    "style": Ratio("{style_ms:.1f} ms ÷ plain {plain_ms:.1f} ms"),
+    "mode": Ratio("frames of {mode_ms:.0f} ms ÷ {none_ms:.0f} ms"),
 }

@@ -76,6 +76,21 @@ STACKS = {
     "alpha 0.5": "{half_ms:.1f} ms",
     "alpha 1/255": "{faint_ms:.1f} ms",
 }
+BY_STYLE = {"scene": "{scene}", "index": "`{index}`"}
+STYLES = {
+    **BY_STYLE,
+    "close": "{close[style_ms]:.1f} ms",
+    "close ÷ plain": "{close[style]:.2f}",
+    "oblique": "{oblique[style_ms]:.1f} ms",
+    "oblique ÷ plain": "{oblique[style]:.2f}",
+}
+MODES = {
+    **BY_STYLE,
+    "close": "{close[mode_ms]:.0f} ms",
+    "close ÷ `none`": "{close[mode]:.2f}",
+    "oblique": "{oblique[mode_ms]:.0f} ms",
+    "oblique ÷ `none`": "{oblique[mode]:.2f}",
+}
 
 
 def summary(results: Results) -> str:
@@ -127,9 +142,18 @@ def extremes(results: Results) -> str:
         _table(_having(results, "opaque_stack"), STACKS),
         _table(_having(results, "S", "ring"), VIEWS),
     ]
-    return "\n\n".join(
-        [*tables, "\n".join(_facts(_having(results, name), text) for name, text in facts.items())]
+    found = "\n".join(_facts(_having(results, name), text) for name, text in facts.items())
+    return "\n\n".join(part for part in (*tables, found) if part)
+
+
+def styles(results: Results) -> str:
+    """Styles beside plain strokes and fills, and modes of anti-aliasing beside none."""
+    drawn, modes = (
+        _by_view(_having(results, name, techniques=("static", "bvh"))) for name in ("style", "mode")
     )
+    if not drawn:
+        return "No figures yet."
+    return "\n\n".join([_table(drawn, STYLES), _table(modes, MODES), machine(results, "960 x 540")])
 
 
 BLOCKS: dict[str, Callable[[Results], str]] = {
@@ -138,15 +162,16 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "polygons": polygons,
     "indexes": indexes,
     "extremes": extremes,
+    "styles": styles,
 }
 
 
-def machine(results: Results) -> str:
+def machine(results: Results, picture: str = "1920 x 1080") -> str:
     """One sentence: what the figures were measured on."""
     found = results["machine"]
     return (
         f"Measured on {found['cores']} cores of {_article(found['processor'])} with {found['driver']}, at"
-        f" 1920 x 1080, as medians; runs: {results['runs']}."
+        f" {picture}, as medians; runs: {results['runs']}."
     )
 
 
@@ -164,12 +189,25 @@ def _having(
     return [one for one in records if one["scene"].startswith(scenes)]
 
 
+def _by_view(records: list[Record]) -> list[Record]:
+    """One record for all views of a scene and an index, with those of the views by their names."""
+    found: dict[tuple[str, str], Record] = {}
+    for one in records:
+        index = "grid" if one["technique"] == "static" else one["technique"]
+        both = found.setdefault((one["scene"], index), {"scene": one["scene"], "index": index})
+        both[one["view"]] = one
+    return list(found.values())
+
+
 def _facts(records: list[Record], sentence: str) -> str:
     """A list with one item for each record."""
     return "\n".join(f"- {sentence.format(**record)}." for record in records)
 
 
 def _table(records: Sequence[Record], columns: Columns) -> str:
+    """Nothing where there is no record."""
+    if not records:
+        return ""
     rules = ["---" if heading in TEXTS else "---:" for heading in columns]
     rows = [[column.format(**record) for column in columns.values()] for record in records]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in [list(columns), rules, *rows])

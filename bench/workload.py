@@ -87,10 +87,9 @@ class Workload:
         add_contours(scene, kind, self.contours(kind, size))
         return scene
 
-    def renderer(self, scene: dg.Scene, index: str = "grid") -> dg.Renderer:
+    def renderer(self, scene: dg.Scene, index: str = "grid", **options: Any) -> dg.Renderer:
         """A renderer that has prepared the scene."""
-        options: dict[str, Any] = {} if index == "grid" else {"index": index}
-        renderer = dg.Renderer(size=self.picture, **options)
+        renderer = dg.Renderer(size=self.picture, index=index, **options)
         renderer.preprocess(scene)
         return renderer
 
@@ -101,20 +100,20 @@ class Workload:
         return {**cameras.fixed_views(self.ground), "worst": cameras.worst(self.ground, smallest)}
 
 
-def add_contours(scene: dg.Scene, kind: str, arrays: Arrays) -> dg.Layer:
-    """Adds contours as a layer."""
+def add_contours(scene: dg.Scene, kind: str, arrays: Arrays, **looks: Any) -> dg.Layer:
+    """Adds contours as a layer. looks: keywords of the layer beside or in place of the usual ones."""
     if kind == "isolines":
-        return add_lines(scene, line_table(arrays))
+        return add_lines(scene, line_table(arrays), **looks)
     rows = np.arange(len(arrays["heights"]))
     table = dg.FeatureTable(
         "polygons", arrays["coordinates"], arrays["part_offsets"], arrays["feature_offsets"], rows
     )
-    return scene.add_polygons(table, column=arrays["heights"], cmap=BAND_CMAP)
+    return scene.add_polygons(table, column=arrays["heights"], cmap=BAND_CMAP, **looks)
 
 
-def add_lines(scene: dg.Scene, table: dg.FeatureTable) -> dg.Layer:
+def add_lines(scene: dg.Scene, table: dg.FeatureTable, **looks: Any) -> dg.Layer:
     """Adds isolines as a layer."""
-    return scene.add_lines(table, color=LINE_COLOR, width=LINE_WIDTH, width_units="m")
+    return scene.add_lines(table, **{"color": LINE_COLOR, "width": LINE_WIDTH, "width_units": "m", **looks})
 
 
 def line_table(arrays: Arrays) -> dg.FeatureTable:

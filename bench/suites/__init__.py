@@ -11,6 +11,7 @@ interior     interior: what does the inside of a large polygon cost?
 stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
+styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from . import (
     ring,
     scale,
     stacks,
+    styles,
     views,
 )
 
@@ -49,4 +51,5 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "stacks": stacks.measure,
     "ring": ring.measure,
     "interaction": interaction.measure,
+    "styles": styles.measure,
 }

@@ -503,3 +503,21 @@ def tangent_slopes() -> View:
 def thoeny_slopes() -> View:
     """Strokes narrowed on steep ground as it is seen from the side."""
     return on_slopes("thoeny")
+
+
+@_named
+def steep_miters() -> View:
+    """Corners too sharp for miters on the map, which a slope of 63 degrees opens."""
+    x = np.linspace(-100.0, 100.0, 21)
+    ground = np.tile(2.0 * x, (21, 1)).astype(np.float32)
+    scene = dg.Scene(dg.Terrain(ground, -100.0, 100.0, 10.0, 10.0))
+    half = np.radians(np.linspace(11.0, 19.0, 12))
+    arms = 20.0 * np.stack([np.sin(half), -np.cos(half)], axis=1)
+    places = grid(6, 2).reshape(-1, 2)
+    features = [
+        [place + np.array([arm * (-1.0, 1.0), (0.0, 0.0), arm])]
+        for place, arm in zip(places, arms, strict=True)
+    ]
+    style = StrokeStyle("miter", "butt", slope_correction="tangent")
+    styled(scene, "lines", features, stroke=stroke(12, 6.0, tints(12, 43), style))
+    return above(scene)

@@ -69,10 +69,12 @@ double DecalShape::longest_reach() const {
         {double{half_width}, reach_at_turn(miter_turn), cap == Cap::square ? 1.5 * half_width : 0.0});
 }
 
-// Where words are in units of many quanta, or edges are short, rounding may turn an edge any way.
+// Where words are in units of many quanta, or edges are short, rounding may turn an edge any way; so may a slope.
 double DecalShape::reach_near(LatticePoint a, LatticePoint b, LatticePoint c) const {
     if (corner != Corner::miter)
         return half_width;
+    if (is_tangent)
+        return longest_reach();
     const auto dx = static_cast<double>(b.x - a.x), dy = static_cast<double>(b.y - a.y);
     const auto ex = static_cast<double>(c.x - b.x), ey = static_cast<double>(c.y - b.y);
     const double before = std::hypot(dx, dy), after = std::hypot(ex, ey);
@@ -159,6 +161,7 @@ DecalShape StyleTable::shape_of(const Decal& slot) const {
     shape.cap = style.cap;
     shape.is_joined = is_joined(style);
     shape.miter_turn = miter_turn(style);
+    shape.is_tangent = style.slope_correction == SlopeCorrection::tangent;
     if (style.pattern.period > 0.0) {
         shape.periods_per_quantum = grid_->quantum / style.pattern.period;
         shape.first_period = style.pattern.offset / style.pattern.period;

@@ -34,6 +34,7 @@ struct DecalShape {
     Corner corner = Corner::round;
     Cap cap = Cap::round;
     double miter_turn = 1.0;           // cosine of the largest turn that is mitred
+    bool is_tangent = false;           // measured on slopes, where turns are others
     double periods_per_quantum = 0.0;  // 0: no pattern
     double first_period = 0.0;         // where a line begins in its pattern
 

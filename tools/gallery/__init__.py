@@ -1,0 +1,7 @@
+"""The pictures of docs/gallery.md, drawn into docs/images/gallery: `make gallery`, or python -m tools.gallery.
+
+sheet       panels with labels beside each other, as one picture
+lines       strokes: corners, caps, patterns, bands, casings
+polygons    outlines, hatches, and what lies over what
+maps        Honolulu: colours with legends, both indexes, anti-aliasing, silhouettes; widths on slopes
+"""
