@@ -3,8 +3,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include "decalgl/frame/antialias.h"
 #include "decalgl/core/error.h"
+#include "decalgl/frame/antialias.h"
 #include "decalgl/frame/renderer.h"
 #include "frame/prepared_file.h"
 #include "register.h"
