@@ -202,7 +202,7 @@ void StaticDecals::draw_areas(const gl::Flags& flags, CoverageRule rule, const G
     const auto draw_class = [&](const std::string& flag) {
         gl::Flags all = flags;
         all.insert(flag);
-        if (rule == CoverageRule::thoeny && (flag == classes || flag == cells))
+        if (rule == CoverageRule::thoeny && prepared_->has_lines && (flag == classes || flag == cells))
             all.insert("THOENY");
         if (draws_levels_)
             all.insert("LEVELS");
