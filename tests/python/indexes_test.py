@@ -13,6 +13,7 @@ from shapely import LineString, box
 
 import decalgl as dg
 import judge
+import rounding
 import scenes
 import shapes
 from decalgl import reference as ref
@@ -109,7 +110,7 @@ def test_coverage_is_the_mean_of_its_samples(name: str, kind: str) -> None:
     index = renderer(dg.BvhIndex(cells=64))
     frame = judge.draw(index, one)
     x0, y0, x1, y1 = crop = judge.busiest_crop(frame, (240, 135))
-    expected = judge.coverage_of_samples(one, frame, crop)
+    expected = rounding.coverage_of_samples(one, frame, crop)
     bvh = judge.overlay_of(index, one, "coverage")[y0:y1, x0:x1]
     ground = np.isfinite(frame.depth[y0:y1, x0:x1])
     difference = np.abs(bvh - expected).max(axis=-1)[ground]
