@@ -14,7 +14,7 @@ int main() {
     layer.name = "triangle";
     layer.features = decalgl::Features::own(decalgl::FeatureKind::polygons, {100, 100, 900, 100, 500, 900},
                                             {0, 3}, {0, 1});
-    layer.colors = {200, 30, 30, 255};
+    layer.fill.colors = {200, 30, 30, 255};
     scene.layers.push_back(layer);
     decalgl::Renderer renderer;
     renderer.preprocess(scene);
