@@ -13,7 +13,7 @@ template <typename Real>
 struct CellPoints {
     int level = 0;
     int64_t bucket_column = 0, bucket_row = 0;
-    PlanePoint corner{};  // of the cell, in quanta from that of its bucket
+    Vector2 corner{};  // of the cell, in quanta from that of its bucket
     std::vector<Real> x, y;
 };
 
@@ -76,8 +76,8 @@ private:
             awaits_phase_ = false;
             return;
         }
-        const PlanePoint to{static_cast<double>(word & COORDINATE_MASK),
-                            static_cast<double>(word >> COORDINATE_BITS & COORDINATE_MASK)};
+        const Vector2 to{static_cast<double>(word & COORDINATE_MASK),
+                         static_cast<double>(word >> COORDINATE_BITS & COORDINATE_MASK)};
         const bool moves = (word & MOVE) != 0;
         if (!is_line_) {
             if (!moves)
@@ -93,14 +93,14 @@ private:
         from_ = to;
     }
 
-    PlanePoint at(size_t point) const { return {double{at_x_[point]}, double{at_y_[point]}}; }
+    Vector2 at(size_t point) const { return {double{at_x_[point]}, double{at_y_[point]}}; }
 
     void cover(size_t point, double share, double width) {
         if (share <= width)
             shares_[point] = std::min(shares_[point], static_cast<Real>(share));
     }
 
-    void add_capsule(PlanePoint from, PlanePoint to) {
+    void add_capsule(Vector2 from, Vector2 to) {
         const auto x0 = static_cast<Real>(from.x), y0 = static_cast<Real>(from.y);
         const auto dx = static_cast<Real>(to.x - from.x), dy = static_cast<Real>(to.y - from.y);
         const auto radius = static_cast<Real>(style_.half_width());
@@ -115,11 +115,11 @@ private:
         }
     }
 
-    void add_joined_edge(PlanePoint to) {
-        const PlanePoint along = to - from_;
+    void add_joined_edge(Vector2 to) {
+        const Vector2 along = to - from_;
         const double length = std::sqrt(dot(along, along)), width = style_.width_at(periods_);
         for (size_t i = 0; i < shares_.size(); ++i) {
-            const PlanePoint past = at(i) - from_;
+            const Vector2 past = at(i) - from_;
             if (length == 0.0) {
                 cover(i, std::sqrt(dot(past, past)) / style_.half_width(), width);
                 continue;
@@ -139,7 +139,7 @@ private:
     }
 
     // ring_cells.h
-    void add_crossing(PlanePoint to) {
+    void add_crossing(Vector2 to) {
         const double left = static_cast<double>(bias_);
         const bool starts_left = from_.x == left, ends_left = to.x == left;
         const auto border = static_cast<Real>(starts_left == ends_left ? 1e9 : starts_left ? from_.y : to.y);
@@ -188,7 +188,7 @@ private:
     uint32_t slot_ = 0;
     bool is_line_ = false, is_clip_ = false, has_came_ = false, awaits_phase_ = false;
     StyleReader style_;
-    PlanePoint from_{}, came_{};
+    Vector2 from_{}, came_{};
     double periods_ = 0.0;
 };
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "technique/static_decals/prepared_decals.h"
+#include "vector/stroke_reach.h"
 
 namespace decalgl {
 
@@ -17,18 +18,8 @@ inline float float_of(uint32_t bits) {
     return value;
 }
 
-struct PlanePoint {
-    double x, y;
-};
-
-inline PlanePoint operator-(PlanePoint a, PlanePoint b) {
+inline Vector2 operator-(Vector2 a, Vector2 b) {
     return {a.x - b.x, a.y - b.y};
-}
-inline double dot(PlanePoint a, PlanePoint b) {
-    return a.x * b.x + a.y * b.y;
-}
-inline double cross(PlanePoint a, PlanePoint b) {
-    return a.x * b.y - a.y * b.x;
 }
 
 // One slot's style, as it is written in the tables.
@@ -70,7 +61,7 @@ public:
 
     // The share of the half width at which a joined stroke's corner between two edges covers a point; all lead from
     // the corner.
-    double corner_share(PlanePoint at, PlanePoint came, PlanePoint goes) const {
+    double corner_share(Vector2 at, Vector2 came, Vector2 goes) const {
         const double before = std::sqrt(dot(came, came)), after = std::sqrt(dot(goes, goes));
         const double cosine = dot(came, goes) / (before * after);
         const bool mitred = is(STYLE_MITER) && cosine >= double{float_of(record_[0][1])};
@@ -80,7 +71,7 @@ public:
             return not_covered;
         double apart = std::max(std::abs(cross(came, at)) / before, std::abs(cross(goes, at)) / after);
         if (is(STYLE_BEVEL)) {
-            const PlanePoint out{came.x / before - goes.x / after, came.y / before - goes.y / after};
+            const Vector2 out{came.x / before - goes.x / after, came.y / before - goes.y / after};
             const double length = std::sqrt(dot(out, out)),
                          half_turn = std::sqrt(std::max(0.5 * (1.0 + cosine), 0.0));
             if (length * half_turn <= 0.0)
@@ -104,7 +95,7 @@ public:
     }
 
     // Whether a hatch covers a place, in quanta from the corner of a bucket.
-    bool hatch_covers(int64_t bucket_column, int64_t bucket_row, PlanePoint inside) const {
+    bool hatch_covers(int64_t bucket_column, int64_t bucket_row, Vector2 inside) const {
         for (uint32_t set = 0; set < record_[0][2]; ++set) {
             const StyleTexel &step = record_[1 + 2 * set], &leap = record_[2 + 2 * set];
             const double spacings = inside.x * float_of(step[0]) + inside.y * float_of(step[1]) +
