@@ -116,7 +116,7 @@ void end_group(inout Layers layers, inout uint open, Group group, Nearest part, 
         vec4 color = seen * covered_color(group.style, group.slot, part, group.foot);
         if (color.a > 0.0 || mask != 0u) keep(layers, group.slot, color, mask);
     } else {
-        uint mask = group.covered & inside & shown_samples(group, cell, local, foot);
+        uint mask = shown_samples(group, cell, local, foot, group.covered & inside);
         if (mask != 0u) keep(layers, group.slot, vec4(0.0), mask);
     }
     open = all_samples;
