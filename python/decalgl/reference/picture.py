@@ -14,7 +14,7 @@ import numpy as np
 
 from .decals import follows_slopes
 from .edges import edge_distance
-from .membership import membership
+from .membership import Membership, membership
 from .rays import RayCaster, Surface, Viewpoint, pixel_centres, raycast, viewpoint
 from .strokes import Slopes
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
         Crop,
         FloatArray,
         IntArray,
-        LayerLike,
         SceneLike,
         Size,
     )
@@ -73,12 +72,14 @@ def render_ids(
     surface: Surface | None = None,
     distances: bool = True,
     limit: float = np.inf,
+    nearest: bool = False,
 ) -> Ids:
     """Topmost feature at pixel centres.
 
     size: picture width and height in pixels. crop: (x0, y0, x1, y1) in pixels, the whole picture by
     default; the result has shape (y1 - y0, x1 - x0). surface: what the centres of the crop see, to
     save the rays. distances: False leaves the edge distance out (NaN); limit: see `edge_distance`.
+    nearest: see `membership`.
     """
     x0, y0, x1, y1 = crop or (0, 0, *size)
     shape = (y1 - y0, x1 - x0)
@@ -88,7 +89,7 @@ def render_ids(
     slopes = slopes_of(scene, camera, size, surface)
     ids, layers = np.full(len(xy), -1, dtype=np.int64), np.full(len(xy), -1, dtype=np.int32)
     for index, layer in enumerate(scene.layers):
-        top = membership(layer, xy, slopes=slopes).topmost()
+        top = membership(layer, xy, slopes=slopes, nearest=nearest).topmost()
         drawn = top >= 0
         ids[drawn] = np.asarray(layer.features.rows, dtype=np.int64)[top[drawn]]
         layers[drawn] = index
@@ -106,16 +107,20 @@ def slopes_of(scene: SceneLike, camera: CameraLike, size: Size, surface: Surface
     return Slopes(gradient, viewpoint(camera, size).forward)
 
 
-def composite(scene: SceneLike, xy: FloatArray, slopes: Slopes | None = None) -> FloatArray:
-    """Premultiplied colour (n, 4), 0..1, of all features "over" one another at map points (n, 2)."""
+def composite(
+    scene: SceneLike, xy: FloatArray, slopes: Slopes | None = None, nearest: bool = False
+) -> FloatArray:
+    """Premultiplied colour (n, 4), 0..1, of all features "over" one another at map points (n, 2).
+
+    nearest: see `membership`.
+    """
     result = np.zeros((len(xy), 4))
     for layer in scene.layers:
-        _composite_layer(result, layer, xy, slopes)
+        _composite_layer(result, membership(layer, xy, slopes=slopes, nearest=nearest))
     return result
 
 
-def _composite_layer(result: FloatArray, layer: LayerLike, xy: FloatArray, slopes: Slopes | None) -> None:
-    held = membership(layer, xy, slopes=slopes)
+def _composite_layer(result: FloatArray, held: Membership) -> None:
     depths = np.diff(held.offsets)
     active = np.flatnonzero(depths > 0)
     level = 0
@@ -162,10 +167,12 @@ def render_overlay(
     samples: int = 16,
     seed: int = 0,
     surface: Surface | None = None,
+    nearest: bool = False,
 ) -> Overlay:
     """The filtered overlay of a crop (x0, y0, x1, y1) of a picture of `size`, all in pixels.
 
     surface: of `sample_surface` with the same arguments, to save the rays when layers change.
+    nearest: see `membership`.
     """
     x0, y0, x1, y1 = crop or (0, 0, *size)
     if x1 <= x0 or y1 <= y0:
@@ -184,12 +191,17 @@ def render_overlay(
             assert caster is not None
             seen = caster.cast(points.reshape(-1, 2)).reshape(*points.shape[:4])
         gradients = caster.cast(pixel_centres(band)).gradient if caster is not None and planes else None
-        bands.append(_filter_band(scene, view, points, seen, gradients))
+        bands.append(_filter_band(scene, view, points, seen, gradients, nearest))
     return Overlay(*(np.concatenate(parts) for parts in zip(*bands, strict=True)))
 
 
 def _filter_band(
-    scene: SceneLike, view: Viewpoint, points: FloatArray, seen: Surface, gradients: FloatArray | None
+    scene: SceneLike,
+    view: Viewpoint,
+    points: FloatArray,
+    seen: Surface,
+    gradients: FloatArray | None,
+    nearest: bool,
 ) -> tuple[FloatArray, BoolArray, FloatArray, BoolArray]:
     """The members of an Overlay for sub-positions (h, w, s, s, 2) and what they see.
 
@@ -203,7 +215,7 @@ def _filter_band(
         # Where the centre sees sky, each place has its own.
         gradients = np.where(np.isnan(gradients), seen.gradient.reshape(-1, 2), gradients)
         slopes = Slopes(gradients, view.forward)
-    colors = composite(scene, seen.world[..., :2].reshape(-1, 2), slopes)
+    colors = composite(scene, seen.world[..., :2].reshape(-1, 2), slopes, nearest)
     colors = colors.reshape(height, width, samples * samples, 4)
     varied = (colors != colors[:, :, :1]).any(axis=(2, 3))
     terrain = hit.mean(axis=(2, 3))
