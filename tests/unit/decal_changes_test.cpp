@@ -230,7 +230,7 @@ TEST_CASE("an order of drawing is that of an index built with it", "[static]") {
     layers[1].draw_order = look.draw_order;
     const auto expected = build(layers);
     CHECK(picks(*reordered, rows_of(map)) == picks(*expected, rows_of(map)));
-    CHECK(draw_finest_level(*as_decals(reordered)).texels == draw_finest_level(*expected).texels);
+    CHECK(LevelPainter().draw(*as_decals(reordered)).texels == LevelPainter().draw(*expected).texels);
     // And edits keep it.
     const auto edited = reordered->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {5}), MemoryAccount());
     CHECK(edited->query({450.0, 450.0}).front() == FeatureReference{1, 60});
