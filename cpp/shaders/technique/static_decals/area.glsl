@@ -228,14 +228,12 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
     return samples.sum;
 }
 
-// Samples that lie in the cell, `centre` being the pixel's centre in quanta from the cell's corner.
+// Samples that lie in the cell, `centre` being the pixel's centre in quanta from the cell's corner. Neighbours share out
+// those near their border as the two sides of an edge do.
 uint samples_in_cell(vec2 centre, mat2 foot, float size) {
-    uint mask = 0u;
-    for (int i = 0; i < sample_count; ++i) {
-        vec2 at = centre + foot * sample_offsets[i];
-        mask |= uint(all(greaterThanEqual(at, vec2(0.0))) && all(lessThan(at, vec2(size)))) << i;
-    }
-    return mask;
+    Direction right = direction_of(vec2(foot[0].x, foot[1].x)), up = direction_of(vec2(foot[0].y, foot[1].y));
+    return samples_beyond(right, centre.x) & ~samples_beyond(right, centre.x - size) & samples_beyond(up, centre.y) &
+           ~samples_beyond(up, centre.y - size);
 }
 
 // Each sample by itself: where it lies in a cell that few others lie in.
