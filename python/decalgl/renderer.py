@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ._looks import LayerState
     from .camera import Camera
     from .lens import Lens
     from .scene import Layer, Scene
@@ -123,6 +124,7 @@ class Renderer:
         self._cache: bytes = b""
         self._prepared_layers: tuple[AnyLayer, ...] = ()
         self._updated_layers: tuple[AnyLayer, ...] = ()
+        self._updated_states: Mapping[int, LayerState] = {}
 
     def has_options(self, given: Mapping[str, Any]) -> bool:
         """Whether this renderer is what `given`, arguments other than size and antialias, asks for."""
@@ -298,7 +300,9 @@ class Renderer:
         background: "sky", a colour, or None for transparent (alpha 0) where there is no terrain.
         """
         low, high = drawn_background(background)
-        return Frame(self._core.render(low, high), self._updated_layers)
+        if self._updated_layers is self._prepared_layers:
+            self._updated_states = self._changes.states
+        return Frame(self._core.render(low, high), self._updated_layers, self._updated_states)
 
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""
