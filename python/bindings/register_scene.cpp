@@ -49,10 +49,12 @@ Heightfield make_terrain(const Array<float>& heights, double x0, double y0, doub
                        static_cast<int32_t>(heights.shape(1)), x0, y0, dx, dy);
 }
 
-void add_layer(Scene& scene, const std::string& name, bool polygons, const Array<double>& coordinates,
-               const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets,
-               const Array<int64_t>& rows, const Fill& fill, const Stroke& stroke, const Stroke& casing,
-               OutlineMode outline_mode, OutlineOrder outline_order, const Array<int64_t>& draw_order) {
+void add_layer(Scene& scene, const std::string& name, const std::string& technique,
+               const std::shared_ptr<const TechniqueOptions>& options, bool polygons,
+               const Array<double>& coordinates, const Array<int64_t>& part_offsets,
+               const Array<int64_t>& feature_offsets, const Array<int64_t>& rows, const Fill& fill,
+               const Stroke& stroke, const Stroke& casing, OutlineMode outline_mode,
+               OutlineOrder outline_order, const Array<int64_t>& draw_order) {
     if (coordinates.ndim() != 2 || coordinates.shape(1) != 2)
         throw Error(ErrorKind::input, "layer '" + name + "': coordinates must have the shape (vertices, 2)");
     if (std::any_of(rows.data(), rows.data() + rows.size(), [](int64_t row) { return row < 0; }))
@@ -60,6 +62,7 @@ void add_layer(Scene& scene, const std::string& name, bool polygons, const Array
     const auto arrays = keep({coordinates, part_offsets, feature_offsets, rows});
     Layer layer;
     layer.name = name;
+    layer.technique = {technique, options};
     layer.features.kind = polygons ? FeatureKind::polygons : FeatureKind::lines;
     layer.features.coordinates = span_of(arrays->coordinates);
     layer.features.part_offsets = span_of(arrays->part_offsets);
@@ -112,6 +115,8 @@ void register_scene(py::module_& module) {
         .def_readwrite("stroke", &LayerEdit::stroke)
         .def_readwrite("casing", &LayerEdit::casing);
 
+    py::class_<TechniqueOptions, std::shared_ptr<TechniqueOptions>>(module, "TechniqueOptions");
+
     py::class_<Scene>(module, "Scene")
         .def(py::init([](const Array<float>& heights, double x0, double y0, double dx, double dy,
                          double exaggeration, const Relief& relief) {
@@ -123,10 +128,10 @@ void register_scene(py::module_& module) {
              }),
              py::arg("heights"), py::arg("x0"), py::arg("y0"), py::arg("dx"), py::arg("dy"),
              py::arg("exaggeration"), py::arg("relief"))
-        .def("add_layer", &add_layer, py::arg("name"), py::arg("polygons"), py::arg("coordinates"),
-             py::arg("part_offsets"), py::arg("feature_offsets"), py::arg("rows"), py::arg("fill"),
-             py::arg("stroke"), py::arg("casing"), py::arg("outline_mode"), py::arg("outline_order"),
-             py::arg("draw_order"));
+        .def("add_layer", &add_layer, py::arg("name"), py::arg("technique"), py::arg("technique_options"),
+             py::arg("polygons"), py::arg("coordinates"), py::arg("part_offsets"), py::arg("feature_offsets"),
+             py::arg("rows"), py::arg("fill"), py::arg("stroke"), py::arg("casing"), py::arg("outline_mode"),
+             py::arg("outline_order"), py::arg("draw_order"));
 }
 
 }  // namespace decalgl::bindings

@@ -37,6 +37,7 @@ from .scene import Relief, Scene
 from .scene_file import load_scene
 from .strokes import Hatch
 from .styles import Casing, Outline
+from .techniques import Static, Technique
 from .terrain import Terrain
 
 __all__ = [
@@ -66,8 +67,10 @@ __all__ = [
     "Relief",
     "Renderer",
     "Scene",
+    "Static",
     "Stats",
     "StyleError",
+    "Technique",
     "Terrain",
     "UnsupportedError",
     "__version__",

@@ -108,6 +108,8 @@ class Lens:
         ring_offsets: Sequence[int],
     ) -> None: ...
 
+class TechniqueOptions: ...
+
 class Scene:
     def __init__(
         self,
@@ -122,6 +124,8 @@ class Scene:
     def add_layer(
         self,
         name: str,
+        technique: str,
+        technique_options: TechniqueOptions | None,
         polygons: bool,
         coordinates: NDArray[np.float64],
         part_offsets: NDArray[np.int64],

@@ -34,6 +34,8 @@ def core_scene(scene: Scene) -> _core.Scene:
 def _add_layer(layer: Layer, result: _core.Scene) -> None:
     result.add_layer(
         name=layer.name,
+        technique=layer.technique.name,
+        technique_options=layer.technique.core_options(),
         polygons=layer.features.kind == "polygons",
         coordinates=layer.features.coords,
         part_offsets=layer.features.part_offsets,

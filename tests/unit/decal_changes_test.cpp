@@ -106,7 +106,7 @@ Picks picks(const Prepared& decals, const std::vector<std::vector<int64_t>>& row
     for (double x = 0.5; x < 1000.0; x += 13.7)
         for (double y = 0.5; y < 1000.0; y += 13.3) {
             found.emplace_back();
-            for (const FeatureReference& one : decals.query(x, y))
+            for (const FeatureReference& one : decals.query({x, y}))
                 found.back().emplace_back(one.layer, rows[one.layer][one.feature]);
         }
     return found;
@@ -193,8 +193,8 @@ TEST_CASE("an edit leaves other buckets as they are and shares their lists", "[s
     // A second edit of the same index cannot continue its lists in place.
     const auto branch = as_decals(after->edited(edit_of(1, {{700, 500, 720, 520}}, {}, {}), MemoryAccount()));
     CHECK(branch->words.data() != after->words.data());
-    CHECK(again->query(310.0, 510.0).front() == FeatureReference{1, 61});
-    CHECK(branch->query(710.0, 510.0).front() == FeatureReference{1, 61});
+    CHECK(again->query({310.0, 510.0}).front() == FeatureReference{1, 61});
+    CHECK(branch->query({710.0, 510.0}).front() == FeatureReference{1, 61});
 }
 
 TEST_CASE("edits are counted, and one beyond the budget changes nothing", "[static]") {
@@ -233,7 +233,7 @@ TEST_CASE("an order of drawing is that of an index built with it", "[static]") {
     CHECK(draw_finest_level(*as_decals(reordered)).texels == draw_finest_level(*expected).texels);
     // And edits keep it.
     const auto edited = reordered->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {5}), MemoryAccount());
-    CHECK(edited->query(450.0, 450.0).front() == FeatureReference{1, 60});
+    CHECK(edited->query({450.0, 450.0}).front() == FeatureReference{1, 60});
 }
 
 TEST_CASE("looks that hide, widen and come back", "[static]") {

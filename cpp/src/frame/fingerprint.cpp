@@ -51,6 +51,7 @@ Digest digest_of_look(const Relief& relief, const std::vector<Layer>& layers, un
         builder.add_value(value);
     for (const Layer& layer : layers) {
         builder.add(Span<const char>(layer.name.data(), layer.name.size()));
+        builder.add(Span<const char>(layer.technique.name.data(), layer.technique.name.size()));
         builder.add_value(layer.features.kind);
         add(layer.fill, builder);
         add(layer.stroke, builder);

@@ -90,7 +90,8 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
                 techniques_.push_back(make_technique(pass.technique));
         }
         for (size_t i = 0; i < techniques_.size(); ++i)
-            techniques_[i]->upload(scene->passes[i].prepared, scene->passes[i].in_lens, memory_);
+            techniques_[i]->upload(scene->passes[i].prepared, scene->passes[i].in_lens,
+                                   {&terrain_->heights(), &scene->terrain}, memory_);
         gl::check_errors("uploading the scene");
     } catch (...) {
         scene_.reset();
@@ -121,8 +122,10 @@ UpdateReport Pipeline::update_layers(std::shared_ptr<const PreparedScene> scene,
         set_view();
     UpdateReport report;
     report.shader_steps = context_->info().software ? software_shader_steps : 0;
+    counts_.clear();
     for (const auto& technique : techniques_) {
         const UpdateReport part = technique->update(view_);
+        counts_.insert(counts_.end(), part.counts.begin(), part.counts.end());
         report.pieces += part.pieces;
         report.bytes += part.bytes;
         report.longest_walk = std::max(report.longest_walk, part.longest_walk);
@@ -139,9 +142,12 @@ void Pipeline::set_view() {
              scene_->positions,
              request.antialias == Antialias::coverage ? Antialias::coverage : Antialias::none,
              widest_pixel(tiles_, scene_->terrain, request.camera, request.height),
-             options_.coverage};
+             options_.coverage,
+             &view_block_,
+             &timings_};
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
+    write_view_block();
     terrain_->set_levels(tiles_);
     choose_pieces();
     make_targets();
@@ -285,7 +291,8 @@ std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     return ids;
 }
 
-void Pipeline::draw_surface(std::vector<double>& world, std::vector<float>& depth) {
+void Pipeline::draw_surface(std::vector<double>& world, std::vector<float>& depth,
+                            std::vector<float>& gradients) {
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     std::vector<uint32_t> positions(4 * pixels);
     std::vector<float> surfaces(4 * pixels);
@@ -296,7 +303,8 @@ void Pipeline::draw_surface(std::vector<double>& world, std::vector<float>& dept
         read_shown(framebuffer, GL_COLOR_ATTACHMENT1, GL_RGBA32F, piece, surfaces);
     }
     gl::check_errors("reading the surface");
-    unpack_surface(positions, surfaces, request_, scene_->positions, view_block_.forward.w, world, depth);
+    unpack_surface(positions, surfaces, request_, scene_->positions, view_block_.forward.w, world, depth,
+                   gradients);
 }
 
 double Pipeline::time_floor() {

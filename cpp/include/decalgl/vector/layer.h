@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,28 @@ enum class OutlineMode : uint8_t { normal, inset, offset };
 // Over all fills of the layer, or each over its own feature's fill.
 enum class OutlineOrder : uint8_t { layer, feature };
 
+// What one technique lets its users choose; each has its own.
+class TechniqueOptions {
+public:
+    virtual ~TechniqueOptions() = default;
+    virtual bool equals(const TechniqueOptions& other) const = 0;
+};
+
+// Who draws a layer, by a name of technique/registry.cpp.
+struct TechniqueChoice {
+    std::string name = "static";
+    std::shared_ptr<const TechniqueOptions> options;  // null: the technique's own
+
+    bool operator==(const TechniqueChoice& other) const {
+        const bool same_options =
+            options && other.options ? options->equals(*other.options) : options == other.options;
+        return name == other.name && same_options;
+    }
+};
+
 struct Layer {
     std::string name;
+    TechniqueChoice technique;
     Features features;
     Fill fill;      // of polygons
     Stroke stroke;  // of lines; of polygons: their outlines

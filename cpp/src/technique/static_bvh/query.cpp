@@ -69,15 +69,15 @@ std::vector<uint32_t> slots_at(const DecalGroup& group, LatticePoint point) {
 
 }  // namespace
 
-std::vector<FeatureReference> PreparedBvh::query(double x, double y) const {
+std::vector<FeatureReference> PreparedBvh::query(const SeenPoint& point) const {
     std::vector<FeatureReference> found;
-    const double lattice_x = lattice.x_of(x), lattice_y = lattice.y_of(y);
+    const double lattice_x = lattice.x_of(point.x), lattice_y = lattice.y_of(point.y);
     if (!(std::abs(lattice_x) <= lattice_extent && std::abs(lattice_y) <= lattice_extent))
         return found;
-    const LatticePoint point = lattice.nearest(x, y);
+    const LatticePoint nearest = lattice.nearest(point.x, point.y);
     std::unordered_set<uint64_t> seen;
     for (size_t group = groups.size(); group-- > 0;)
-        for (const uint32_t slot : slots_at(groups[group], point)) {
+        for (const uint32_t slot : slots_at(groups[group], nearest)) {
             // A feature may show more than one of its decals.
             const FeatureReference feature = slots[groups[group].first_slot + slot];
             if (seen.insert(uint64_t{feature.layer} << 32 | feature.feature).second)

@@ -38,7 +38,7 @@ class PreparedDecals : public Prepared {
 public:
     PreparedCounts counts() const override;
     FeatureReference feature(uint32_t id) const override { return slots[id].feature; }
-    std::vector<FeatureReference> query(double x, double y) const override;
+    std::vector<FeatureReference> query(const SeenPoint& point) const override;
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
     bool shows_anything() const override { return has_shown; }

@@ -37,11 +37,11 @@ Span<const uint32_t> PreparedDecals::list(uint32_t cell_entry) const {
     return {words.data() + first, texels < COUNT_ESCAPE ? size_t{4} * texels : words.size() - first};
 }
 
-std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
+std::vector<FeatureReference> PreparedDecals::query(const SeenPoint& point) const {
     std::vector<FeatureReference> found;
     CellPoints<double> cell;
     uint32_t entry = 0;
-    if (!locate(*this, x, y, cell, entry))
+    if (!locate(*this, point.x, point.y, cell, entry))
         return found;
     ListReader<double>(*this, cell)
         .read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares) {

@@ -81,7 +81,7 @@ std::unique_ptr<const Prepared> StaticDecals::open(const ArchiveReader& archive,
 }
 
 void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
-                          const MemoryAccount& memory) {
+                          const TerrainView&, const MemoryAccount& memory) {
     memory_ = memory;
     auto next = std::static_pointer_cast<const PreparedDecals>(std::move(prepared));
     auto next_lens = std::static_pointer_cast<const PreparedDecals>(std::move(lens));
@@ -189,10 +189,15 @@ void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::Progra
         flags.insert("TRANSLUCENT");
     else if (has_one_color && view.antialias == Antialias::none)
         flags.insert("ONE_COLOR");
+    if (view.has_below) {
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    }
     if (view.antialias == Antialias::coverage)
         draw_areas(flags, view.coverage, gbuffer, programs);
     else
         draw_full_screen(std::move(flags), gbuffer, programs);
+    glDisable(GL_BLEND);
 }
 
 // The class of each pixel first, then those of each class (area_classes.h).
