@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "decalgl/core/span.h"
+#include "decalgl/technique/loops_detail.h"
+#include "decalgl/vector/layer.h"
 
 namespace decalgl {
 
@@ -32,12 +34,14 @@ enum class LinePrimitives : uint8_t { triangles, segments };
 struct LoopsBvh {
     std::vector<uint32_t> primary_branching;  // empty: chosen from the data
     uint32_t node_capacity = 45;              // primitives in a primary node that is not divided
+    double largest_share = 1.0;  // of its primitives that children may hold on average for a primary node to be divided
     std::vector<uint32_t> secondary_depths;   // by the level of the primary leaf; beyond the last: 0
     std::vector<uint32_t> secondary_branching;
     uint32_t coverage_depth = 2;
     double minimum_coverage = 1.0;  // share of the nodes below that a primitive covers where it stays in a node
 };
 
+// Layers of equal options are prepared together; two functions are never equal.
 struct LoopsOptions {
     RemovalOrder order = RemovalOrder::douglas_peucker;
     RemovalFunction function;
@@ -47,5 +51,14 @@ struct LoopsOptions {
 
 // Throws Error(input) that names what is out of range.
 void validate(const LoopsOptions& options);
+
+// What a layer's TechniqueChoice carries: `detail` is what it begins with.
+class LoopsChoice : public TechniqueOptions {
+public:
+    LoopsOptions options;
+    LoopsDetail detail;
+
+    bool equals(const TechniqueOptions& other) const override;
+};
 
 }  // namespace decalgl
