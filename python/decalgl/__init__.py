@@ -31,6 +31,7 @@ from .frame import Frame, Picked, PreparedLayer, Stats
 from .indexes import BvhIndex
 from .layer import Layer
 from .lens import Lens
+from .loops import Detail, Loops, LoopsBvh
 from .patterns import Pattern
 from .renderer import Renderer
 from .scene import Relief, Scene
@@ -50,6 +51,7 @@ __all__ = [
     "CrsError",
     "DecalError",
     "DecalWarning",
+    "Detail",
     "Diagnosis",
     "FeatureTable",
     "FileError",
@@ -59,6 +61,8 @@ __all__ = [
     "InputError",
     "Layer",
     "Lens",
+    "Loops",
+    "LoopsBvh",
     "MemoryLimitError",
     "Outline",
     "Pattern",

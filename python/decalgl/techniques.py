@@ -2,6 +2,7 @@
 
 "auto"      chosen by the layer
 "static"    world-size lines and polygons, looked up pixel by pixel: docs/techniques/static.md
+"loops"     the same, simplified where and as much as the view allows: docs/techniques/loops.md
 """
 
 from __future__ import annotations
@@ -33,14 +34,11 @@ class Static(Technique):
     name = "static"
 
 
-TECHNIQUES: tuple[type[Technique], ...] = (Static,)
-
-
 def resolve_technique(technique: str | Technique, layer_name: str) -> Technique:
     """The technique of a layer. Raises StyleError."""
     if isinstance(technique, Technique):
         return technique
-    by_name = {each.name: each for each in TECHNIQUES}
+    by_name = {each.name: each for each in Technique.__subclasses__()}
     if technique == "auto":
         return Static()
     if isinstance(technique, str) and technique in by_name:
