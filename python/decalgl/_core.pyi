@@ -110,6 +110,9 @@ class Lens:
 
 class TechniqueOptions: ...
 
+class VolumeOptions(TechniqueOptions):
+    def __init__(self, exact: bool, arc_step: float) -> None: ...
+
 class Scene:
     def __init__(
         self,
@@ -137,6 +140,10 @@ class Scene:
         outline_mode: OutlineMode,
         outline_order: OutlineOrder,
         draw_order: NDArray[np.int64],
+    ) -> None: ...
+
+    def set_triangles(
+        self, layer: int, coordinates: NDArray[np.float64], first_of: NDArray[np.int64]
     ) -> None: ...
 
 class Camera:
