@@ -38,7 +38,7 @@ from .scene import Relief, Scene
 from .scene_file import load_scene
 from .strokes import Hatch
 from .styles import Casing, Outline
-from .techniques import Static, Technique
+from .techniques import Static, Technique, Volume
 from .terrain import Terrain
 
 __all__ = [
@@ -77,6 +77,7 @@ __all__ = [
     "Technique",
     "Terrain",
     "UnsupportedError",
+    "Volume",
     "__version__",
     "doctor",
     "load_scene",

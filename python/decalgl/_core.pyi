@@ -157,6 +157,8 @@ def loops_simplified(
     tolerances: Sequence[float],
     choice: LoopsChoice,
 ) -> list[tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]]: ...
+class VolumeOptions(TechniqueOptions):
+    def __init__(self, exact: bool, arc_step: float) -> None: ...
 
 class Scene:
     def __init__(
@@ -185,6 +187,10 @@ class Scene:
         outline_mode: OutlineMode,
         outline_order: OutlineOrder,
         draw_order: NDArray[np.int64],
+    ) -> None: ...
+
+    def set_triangles(
+        self, layer: int, coordinates: NDArray[np.float64], first_of: NDArray[np.int64]
     ) -> None: ...
 
 class Camera:

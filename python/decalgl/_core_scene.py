@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _core
 from ._colors import colormap, parse_color
+from ._triangles import triangles_of
 
 if TYPE_CHECKING:
     from .scene import Layer, Scene
@@ -28,6 +29,8 @@ def core_scene(scene: Scene) -> _core.Scene:
     )
     for layer in scene.layers:
         _add_layer(layer, result)
+        if layer.technique.needs_triangles and layer.kind == "polygons" and layer.fill is not None:
+            result.set_triangles(layer.index, *triangles_of(layer.features))
     return result
 
 

@@ -137,6 +137,7 @@ struct View {
     TimingLog* timings = nullptr;      // for passes of a technique's own; may be null
     // Whether the framebuffer holds what other techniques drew below: to be laid over. Else all of it is written.
     bool has_below = false;
+    double terrain_error = 0.0;  // pixels that the terrain's level of detail may be off
 };
 
 // The terrain on the GPU. heights: R32F, metres at each sample (column, row), holes below -1e30.
@@ -184,6 +185,8 @@ public:
     virtual UpdateReport update(const View& view) = 0;
     // Whether `draw` needs a depth attachment for itself, with whatever values.
     virtual bool needs_depth(const View&) const { return false; }
+    // Whether `draw` and `draw_ids` need a depth attachment with a stencil.
+    virtual bool needs_stencil(const View&) const { return false; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture: all of it,
     // or over what view.has_below says is there.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;
