@@ -6,8 +6,8 @@
 #include <random>
 
 #include "one_pixel.h"
+#include "technique/half_planes.h"
 #include "technique/static_decals/bucket_grid.h"
-#include "technique/static_decals/half_planes.h"
 
 using namespace decalgl;
 using glm::vec4;

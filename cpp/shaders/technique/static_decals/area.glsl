@@ -7,9 +7,9 @@
 // Every sample lies in one cell and is covered by exactly one of two neighbours, so no background shows through
 // a shared border, and joints, caps and crossings need no special case. The samples are a scrambled
 // (0, 5, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
+#include "shared/half_planes.glsl"
 #include "shared/sample_offsets.glsl"
 #include "technique/static_decals/point.glsl"
-#include "technique/static_decals/half_planes.glsl"
 #include "technique/static_decals/levels.glsl"
 
 const uint all_samples = 0xFFFFFFFFu;

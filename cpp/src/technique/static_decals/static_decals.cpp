@@ -6,8 +6,8 @@
 
 #include "gl/gl.h"
 #include "gl/texture.h"
+#include "technique/half_planes.h"
 #include "technique/static_decals/area_classes.h"
-#include "technique/static_decals/half_planes.h"
 #include "technique/static_decals/levels.h"
 
 namespace decalgl {

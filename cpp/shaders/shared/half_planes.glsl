@@ -8,7 +8,7 @@
 //     row      direction (a, b) of the half plane a x + b y + distance >= 0, as the turn from the x axis by the
 //              place on the diamond |a| + |b| = 1; the lower half turn is the opposite of the upper one
 //     column   distance / (|a| + |b|), from -1/2, where no sample is in, to 1/2, where all are
-#include "technique/static_decals/half_plane_table.h"
+#include "shared/half_plane_table.h"
 
 uniform usamplerBuffer half_planes;
 

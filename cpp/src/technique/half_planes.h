@@ -1,3 +1,4 @@
+// The table of half planes, for every technique that filters over a pixel's area.
 #pragma once
 
 #include <cstdint>
@@ -5,7 +6,7 @@
 
 namespace decalgl {
 
-// The table of shaders/technique/static_decals/half_planes.glsl: row by row, a bit a sample. A row more than there
+// The table of shaders/shared/half_planes.glsl: row by row, a bit a sample. A row more than there
 // are turns, for the direction that is the opposite of the first.
 std::vector<uint32_t> make_half_planes();
 

@@ -1,4 +1,4 @@
-#include "technique/static_decals/half_planes.h"
+#include "technique/half_planes.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <glm/vec2.hpp>
 #include <numeric>
 
+#include "shared/half_plane_table.h"
 #include "shared/sample_offsets.h"
-#include "technique/static_decals/half_plane_table.h"
 
 namespace decalgl {
 namespace {
