@@ -58,6 +58,8 @@ class Stroke:
     styles: Sequence[StrokeStyle]
     style_of: NDArray[np.uint32]
     widest: float
+    in_pixels: bool
+    limits: tuple[float, float, float, float]
     def __init__(self) -> None: ...
 
 class Hatch:
@@ -109,6 +111,9 @@ class Lens:
     ) -> None: ...
 
 class TechniqueOptions: ...
+
+class DynamicOptions(TechniqueOptions):
+    def __init__(self, method: str, width_rule: str, cell: float) -> None: ...
 
 class Scene:
     def __init__(

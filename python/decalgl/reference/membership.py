@@ -15,12 +15,13 @@ import numpy as np
 from .decals import FillDecals, StrokeDecals, decals_of
 from .fills import Edges, hatch_clearance, inside_polygons
 from .points import strips
+from .screen import touching_on_screen
 from .strokes import Slopes, StyledStroke, Touch, styled_strokes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike
+    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike, StrokeLike
     from .points import Strip
 
 
@@ -126,7 +127,7 @@ class _Finder:
             return feature[kept], rank[kept], feature[kept]
         keys, tints = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
         for stroke, first in zip(self.strokes, self.bands_at[1:], strict=True):
-            key, share = covered_pairs(stroke, points, slopes)
+            key, share = covered_pairs(_touching(self.decals.stroke, stroke, points, slopes), count)
             keys.append(key)
             feature, bands = key // count, stroke.style.bands
             if bands:
@@ -142,11 +143,21 @@ class _Finder:
         return feature, rank, tint[kept]
 
 
-def covered_pairs(stroke: StyledStroke, points: Strip, slopes: Slopes | None) -> tuple[IntArray, FloatArray]:
-    """Ascending keys feature * n + point of the points that strokes cover, and gauge over half width of each."""
+def _touching(
+    stroke: StrokeLike, styled: StyledStroke, points: Strip, slopes: Slopes | None
+) -> Iterator[Touch]:
+    if not stroke.follows_view:
+        return styled.touching(points, slopes)
+    if slopes is None or slopes.planes is None:
+        raise ValueError("Widths on the screen need the planes that points are seen on; see `slopes_of`.")
+    return touching_on_screen(styled, stroke, points, slopes.planes)
+
+
+def covered_pairs(touches: Iterable[Touch], count: int) -> tuple[IntArray, FloatArray]:
+    """Ascending keys feature * count + point of the points that strokes cover, and gauge over half width of each."""
     keys, shares = [np.empty(0, dtype=np.int64)], [np.empty(0)]
-    for touch in stroke.touching(points, slopes):
-        key, share = _nearest(_covered(touch, len(points.index)))
+    for touch in touches:
+        key, share = _nearest(_covered(touch, count))
         keys.append(key)
         shares.append(share)
     return _nearest((np.concatenate(keys), np.concatenate(shares)))
