@@ -184,48 +184,44 @@ vec4 composed(ScreenPlane plane, ivec2 range) {
     int at = range.y - 1;
     bool ended = at < range.x;
     do {
-        // On to the next segment whose border passes through the pixel.
+        // On to the next segment whose border passes through the pixel. What a turn works out is lost when neighbouring
+        // pixels take more turns (llvmpipe); only what is carried from turn to turn is there afterwards.
         bool border = false;
-        vec4 ends;
-        ScreenSegment segment;
-        Joints joints;
         do {
             int index = int(texelFetch(tile_list, max(at, 0)).r);
-            ends = texelFetch(segment_ends, index);
-            segment = on_screen(plane, ends);
-#ifdef UNION
-            float reach = half_width;
-#else
-            joints = joints_at(index);
-            if (joints.slot != slot && !ended) {
+            ScreenSegment segment = on_screen(plane, texelFetch(segment_ends, index));
+#ifndef UNION
+            uint own_slot = texelFetch(segment_joints, index).z;
+            if (own_slot != slot && !ended) {
                 if (covered != 0u) add_line(samples, covered, look.color);
                 covered = 0u;
-                slot = joints.slot;
+                slot = own_slot;
                 look = look_of(slot);
                 half_width = half_width_in_pixels(look, slot, plane.pixels_per_metre);
                 ended = samples.open == 0u;
             }
-            float reach = half_width;
 #endif
             float distance = distance_to(segment);
-            bool near = !ended && segment.seen && half_width > 0.0;
+            bool near = !ended && segment.seen && half_width > 0.0 && covered != all_samples;
 #ifdef JOINED
-            border = near && distance < 4.0 * reach + half_diagonal && covered != all_samples;
+            border = border || (near && distance < 4.0 * half_width + half_diagonal);
 #else
-            if (near && distance <= reach - half_diagonal) covered = all_samples;
-            border = near && distance < reach + half_diagonal && covered != all_samples;
+            if (near && distance <= half_width - half_diagonal) {
+                covered = all_samples;
+                near = false;
+            }
+            border = border || (near && distance < half_width + half_diagonal);
 #endif
             --at;
-#ifdef UNION
-            ended = ended || covered == all_samples || (at < range.x && !border);
-            joints.flags = 0u;
-            if (border) joints = joints_at(index);
-#else
             ended = ended || (at < range.x && !border);
+#ifdef UNION
+            ended = ended || covered == all_samples;
 #endif
         } while (!border && !ended);
         if (border) {
-            covered |= segment_mask(plane, ends, segment, joints, look, half_width);
+            int index = int(texelFetch(tile_list, at + 1).r);
+            vec4 ends = texelFetch(segment_ends, index);
+            covered |= segment_mask(plane, ends, on_screen(plane, ends), joints_at(index), look, half_width);
             ended = at < range.x;
         }
     } while (!ended);
