@@ -13,6 +13,7 @@ from ._core import __version__
 from .camera import Camera
 from .coloring import Coloring
 from .doctor import Diagnosis, doctor
+from .dynamic import Dynamic
 from .errors import (
     CancelledError,
     ColumnError,
@@ -38,8 +39,9 @@ from .scene import Relief, Scene
 from .scene_file import load_scene
 from .strokes import Hatch
 from .styles import Casing, Outline
-from .techniques import Static, Technique, Volume
+from .techniques import Static, Technique
 from .terrain import Terrain
+from .volume import Volume
 
 __all__ = [
     "BvhIndex",
@@ -53,6 +55,7 @@ __all__ = [
     "DecalWarning",
     "Detail",
     "Diagnosis",
+    "Dynamic",
     "FeatureTable",
     "FileError",
     "Frame",

@@ -58,6 +58,8 @@ class Stroke:
     styles: Sequence[StrokeStyle]
     style_of: NDArray[np.uint32]
     widest: float
+    in_pixels: bool
+    limits: tuple[float, float, float, float]
     def __init__(self) -> None: ...
 
 class Hatch:
@@ -157,8 +159,12 @@ def loops_simplified(
     tolerances: Sequence[float],
     choice: LoopsChoice,
 ) -> list[tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]]: ...
+
 class VolumeOptions(TechniqueOptions):
     def __init__(self, exact: bool, arc_step: float) -> None: ...
+
+class DynamicOptions(TechniqueOptions):
+    def __init__(self, method: str, width_rule: str, cell: float) -> None: ...
 
 class Scene:
     def __init__(
@@ -188,7 +194,6 @@ class Scene:
         outline_order: OutlineOrder,
         draw_order: NDArray[np.int64],
     ) -> None: ...
-
     def set_triangles(
         self, layer: int, coordinates: NDArray[np.float64], first_of: NDArray[np.int64]
     ) -> None: ...

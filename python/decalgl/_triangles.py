@@ -19,9 +19,7 @@ def triangles_of(features: FeatureTable) -> tuple[NDArray[np.float64], NDArray[n
     They cover what the even-odd rule over all rings of a feature says, and nothing twice.
     """
     regions = _regions(features)
-    triangles, owner = shapely.get_parts(
-        shapely.constrained_delaunay_triangles(regions), return_index=True
-    )
+    triangles, owner = shapely.get_parts(shapely.constrained_delaunay_triangles(regions), return_index=True)
     corners = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3]
     count = np.bincount(owner, minlength=len(regions))
     return np.ascontiguousarray(corners), np.concatenate([[0], np.cumsum(count)]).astype(np.int64)

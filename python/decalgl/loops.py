@@ -125,7 +125,9 @@ class LoopsBvh:
             bvh.minimum_coverage = self.minimum_coverage
             bvh.largest_share = self.largest_share
         except TypeError:
-            raise InputError(f"LoopsBvh: numbers must be whole and zero or more, but this is {self!r}.") from None
+            raise InputError(
+                f"LoopsBvh: numbers must be whole and zero or more, but this is {self!r}."
+            ) from None
         return bvh
 
 

@@ -4,6 +4,7 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/technique/technique.h"
+#include "technique/dynamic_lines/dynamic_lines.h"
 #include "technique/loops/loops.h"
 #include "technique/shadow_volumes/shadow_volumes.h"
 #include "technique/static_bvh/static_bvh.h"
@@ -17,6 +18,7 @@ using MakeTechnique = std::function<std::unique_ptr<Technique>()>;
 const std::map<std::string, MakeTechnique>& registry() {
     static const std::map<std::string, MakeTechnique> techniques = {
         {"loops", [] { return std::make_unique<Loops>(); }},
+        {"dynamic", [] { return std::make_unique<DynamicLines>(); }},
         {"static", [] { return std::make_unique<StaticDecals>(); }},
         {"volume", [] { return std::make_unique<ShadowVolumes>(); }},
         {"static_bvh", [] { return std::make_unique<StaticBvh>(); }},
