@@ -182,7 +182,7 @@ TEST_CASE("what an edge decides for an area agrees with its samples one by one")
     }
     test::test_context();
     const MemoryAccount account;
-    const auto table = gl::TextureBuffer::from(account, "half planes", GL_R32UI, make_half_planes());
+    const auto table = gl::TextureBuffer::from(account, "half planes", GL_RG32UI, make_half_planes());
     const auto check = [&](OnePixel shader) {
         shader.program().set("half_planes", 1);
         table.bind(1);
@@ -224,7 +224,7 @@ TEST_CASE("what an edge decides for an area agrees with its samples one by one")
 TEST_CASE("a half plane has its share of the samples, and its opposite the others") {
     test::test_context();
     const MemoryAccount account;
-    const auto table = gl::TextureBuffer::from(account, "half planes", GL_R32UI, make_half_planes());
+    const auto table = gl::TextureBuffer::from(account, "half planes", GL_RG32UI, make_half_planes());
     OnePixel shader({area}, 1, R"(
         Direction there = direction_of(input0.xy), back = direction_of(-input0.xy);
         uint samples = samples_beyond(there, input0.z), others = samples_beyond(back, -input0.z);
@@ -263,7 +263,7 @@ TEST_CASE("a half plane has its share of the samples, and its opposite the other
 TEST_CASE("polygons around a vertex share the samples out between them") {
     test::test_context();
     const MemoryAccount account;
-    const auto table = gl::TextureBuffer::from(account, "half planes", GL_R32UI, make_half_planes());
+    const auto table = gl::TextureBuffer::from(account, "half planes", GL_RG32UI, make_half_planes());
     // Three edges from one vertex, each run through in both directions by the polygons on its two sides.
     OnePixel shader({area}, 3, R"(
         Group group = group_of(0u, 8192.0, input2.xy, mat2(input2.z, 0.0, input2.w, input2.z));

@@ -100,7 +100,7 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
     refresh_levels(prepared_.get(), next.get(), levels_);
     refresh_levels(lens_.get(), next_lens.get(), lens_levels_);
     if (!no_vertices_) {
-        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_R32UI, make_half_planes());
+        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_RG32UI, make_half_planes());
         no_vertices_ = gl::VertexArray::create();
     }
     prepared_ = std::move(next);
