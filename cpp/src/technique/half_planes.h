@@ -8,6 +8,6 @@ namespace decalgl {
 
 // The table of shaders/shared/half_planes.glsl: row by row, a bit a sample. A row more than there
 // are turns, for the direction that is the opposite of the first.
-std::vector<uint32_t> make_half_planes();
+std::vector<uint64_t> make_half_planes();
 
 }  // namespace decalgl

@@ -1,4 +1,4 @@
-// The true picture of a pixel's area, by 32 samples held as bits of a word.
+// The true picture of a pixel's area, by 64 samples held as bits of two words.
 //
 //     while samples are left: take the cell of one of them and all samples in it,
 //         walk the cell once; each group answers with the mask of samples it covers
@@ -6,7 +6,7 @@
 //
 // Every sample lies in one cell and is covered by exactly one of two neighbours, so no background shows through
 // a shared border, and joints, caps and crossings need no special case. The samples are a scrambled
-// (0, 5, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
+// (0, 6, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
 #include "technique/static_decals/stroke_area.glsl"
 #include "technique/static_decals/levels.glsl"
 
@@ -47,15 +47,15 @@ uint alike_in_crossing(Crossing crossing) {
     bool border_all = crossing.above - reach >= 0.0;
     bool border_none = crossing.above + reach < 0.0;
     if (!(row_none || row_all) || !(border_none || border_all)) return for_each;
-    return row_all != border_all ? all_samples : 0u;
+    return row_all != border_all ? for_all : for_none;
 }
 
 // Edges that meet in a point have the same word for it, and polygons on both sides of an edge the same for the edge.
-uint crossing_mask(Crossing crossing) {
+uvec2 crossing_mask(Crossing crossing) {
     Direction up = direction_of(crossing.rise);
-    uint low = samples_beyond(up, crossing.low.y), high = samples_beyond(up, crossing.high.y);
-    uint on_row = low & ~high & samples_beyond(direction_of(crossing.side_step), crossing.side);
-    uint border = samples_beyond(up, crossing.above);
+    uvec2 low = samples_beyond(up, crossing.low.y), high = samples_beyond(up, crossing.high.y);
+    uvec2 on_row = low & ~high & samples_beyond(direction_of(crossing.side_step), crossing.side);
+    uvec2 border = samples_beyond(up, crossing.above);
     return on_row ^ border;
 }
 
@@ -65,7 +65,7 @@ uint read_point(inout Group group, uint word) {
     if (group.pen.awaits_phase) {
         group.pen.periods = float(word) / float(PHASE_ONE);
         group.pen.awaits_phase = false;
-        return 0u;
+        return for_none;
     }
 #endif
     vec2 to = group.at - point_of(word);
@@ -81,30 +81,30 @@ uint read_point(inout Group group, uint word) {
     group.from = to;
     if (is_stroke(group)) return next_alike(group, starts_edge(word));
 #endif
-    return starts_edge(word) ? 0u : alike_in_crossing(crossing_of(group, group.before, to));
+    return starts_edge(word) ? for_none : alike_in_crossing(crossing_of(group, group.before, to));
 }
 
 // Front-to-back composition of masks. `open`: samples that still see something behind what was added.
 struct Samples {
-    uint open;
+    uvec2 open;
     vec4 sum;
 #ifdef TRANSLUCENT
     float clear[sample_count];  // how much of what lies behind shows through
 #endif
 };
 
-void add_layer(inout Samples samples, uint mask, vec4 straight) {
+void add_layer(inout Samples samples, uvec2 mask, vec4 straight) {
     mask &= samples.open;
 #ifdef TRANSLUCENT
     float weight = 0.0;
     for (int i = 0; i < sample_count; ++i) {
-        float taken = (mask >> i & 1u) != 0u ? samples.clear[i] * straight.a : 0.0;
+        float taken = has_sample(mask, i) ? samples.clear[i] * straight.a : 0.0;
         samples.clear[i] -= taken;
         weight += taken;
     }
     if (straight.a == 1.0) samples.open &= ~mask;
 #else
-    float weight = float(bitCount(mask));
+    float weight = float(count_of(mask));
     samples.open &= ~mask;
 #endif
     samples.sum += weight * vec4(straight.rgb, 1.0);
@@ -112,13 +112,13 @@ void add_layer(inout Samples samples, uint mask, vec4 straight) {
 
 #ifdef STYLES
 // Of these samples, those that a fill's hatch covers.
-uint shown_samples(Group group, Cell cell, vec2 local, mat2 foot, uint samples) {
-    uint mask = samples;
+uvec2 shown_samples(Group group, Cell cell, vec2 local, mat2 foot, uvec2 samples) {
+    uvec2 mask = samples;
 #ifdef HATCHES
     if (has(group.style, STYLE_HATCH)) {
         vec2 inside = vec2(cell.corner & (BUCKET_QUANTA - 1)) + local;
         float reach = hatch_reach(group.style);
-        mask = 0u;
+        mask = no_samples;
         int i = 0;
         do {
             // Lines begin where a period does.
@@ -127,7 +127,7 @@ uint shown_samples(Group group, Cell cell, vec2 local, mat2 foot, uint samples) 
             mask |= samples_in_fine(phase, 0.0, 2.0 * reach, samples);
             vec2 turns = turns_of(phase, 0.0, 2.0 * reach);
             do {
-                uint line = samples_between(phase, turns.x, turns.x + 2.0 * reach);
+                uvec2 line = samples_between(phase, turns.x, turns.x + 2.0 * reach);
                 if (turns.x <= turns.y && !is_fine(phase)) mask |= line;
                 turns.x += 1.0;
             } while (turns.x <= turns.y);
@@ -138,23 +138,23 @@ uint shown_samples(Group group, Cell cell, vec2 local, mat2 foot, uint samples) 
 }
 
 // Composes the group that ends. `open`: the samples that it is not cut off from.
-void add_group(inout Samples samples, inout uint open, Group group, Cell cell, vec2 local, mat2 foot) {
+void add_group(inout Samples samples, inout uvec2 open, Group group, Cell cell, vec2 local, mat2 foot) {
     if (group.clip) {
         open = group.covered;
         return;
     }
-    uint mask = group.covered & open;
+    uvec2 mask = group.covered & open;
     open = all_samples;
     if (!is_stroke(group)) mask = shown_samples(group, cell, local, foot, mask);
-    if (mask == 0u || !is_shown(group.slot)) return;
+    if (is_empty(mask) || !is_shown(group.slot)) return;
     vec4 straight = color_of(group.slot);
 #ifdef BANDS
     if (has(group.style, STYLE_BANDS)) {
         int last = int(group.style.counts >> BANDS_SHIFT) - 1;
-        uint inner = 0u;
+        uvec2 inner = no_samples;
         int i = 0;
         do {
-            uint band = i < last ? within_band[i] : group.covered;
+            uvec2 band = i < last ? within_band[i] : group.covered;
             add_layer(samples, mask & band & ~inner, color_of_band(group.style, straight, i));
             inner |= band;
         } while (++i <= last);
@@ -167,7 +167,7 @@ void add_group(inout Samples samples, inout uint open, Group group, Cell cell, v
 
 // Walks the list of a cell for the samples that lie in it. `local`: the pixel's centre in quanta from the cell's corner.
 // Most edges decide for all samples alike: the inner loop goes on to the next one that does not.
-vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
+vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside) {
     Samples samples;
     samples.open = inside;
     samples.sum = vec4(0.0);
@@ -180,18 +180,18 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
     int end = count == COUNT_ESCAPE ? 0x7FFFFFFF : at + 4 * int(count);
     Group group = group_of(0u, bias, local, foot);
 #ifdef STYLES
-    uint open = all_samples;
+    uvec2 open = all_samples;
 #endif
     bool ended = false;
     do {
-        uint alike = all_samples;
+        uint alike = for_all;
         uint word;
         do {
             word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
             bool ends = is_header(word);
 #ifndef PARTS
             // The last edge's end first; the header is read again.
-            if (ends && is_stroke(group) && group.beyond != 0u) {
+            if (ends && is_stroke(group) && !is_empty(group.beyond)) {
                 alike = for_each;
                 group.before = group.from;
                 ends = false;
@@ -200,17 +200,17 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
 #endif
             if (!ends) {
                 alike = read_point(group, word);
-                if (alike != for_each) group.covered = is_stroke(group) ? group.covered | alike : group.covered ^ alike;
+                if (alike != for_each) group.covered = is_stroke(group) ? group.covered | uvec2(alike) : group.covered ^ uvec2(alike);
             }
             ++at;
             if (ends) {
 #ifdef STYLES
                 add_group(samples, open, group, cell, local, foot);
 #else
-                if (group.covered != 0u && is_shown(group.slot)) add_layer(samples, group.covered, color_of(group.slot));
+                if (!is_empty(group.covered) && is_shown(group.slot)) add_layer(samples, group.covered, color_of(group.slot));
 #endif
                 group = group_of(word, bias, local, foot);
-                ended = word == LIST_END || samples.open == 0u;
+                ended = word == LIST_END || is_empty(samples.open);
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
@@ -230,7 +230,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uint inside) {
 
 // Samples that lie in the cell, `centre` being the pixel's centre in quanta from the cell's corner. Neighbours share out
 // those near their border as the two sides of an edge do.
-uint samples_in_cell(vec2 centre, mat2 foot, float size) {
+uvec2 samples_in_cell(vec2 centre, mat2 foot, float size) {
     Direction right = direction_of(vec2(foot[0].x, foot[1].x)), up = direction_of(vec2(foot[0].y, foot[1].y));
     return samples_beyond(right, centre.x) & ~samples_beyond(right, centre.x - size) & samples_beyond(up, centre.y) &
            ~samples_beyond(up, centre.y - size);
@@ -255,15 +255,15 @@ Cell cell_of_sample(LatticePosition centre, mat2 foot, int index) {
 // Cell by cell, each for all samples in it.
 vec4 composite_cells(LatticePosition centre, mat2 foot) {
     vec4 sum = vec4(0.0);
-    uint left = all_samples;
+    uvec2 left = all_samples;
     do {
-        int next = findLSB(left);
+        int next = first_of(left);
         Cell cell = cell_of_sample(centre, foot, next);
         vec2 local = vec2(centre.quantum - cell.corner) + centre.fraction;
         // The sample that the cell was looked up for is in it, whatever was rounded.
-        uint inside = left & (samples_in_cell(local, foot, float(1 << cell.bits)) | 1u << next);
+        uvec2 inside = left & (samples_in_cell(local, foot, float(1 << cell.bits)) | sample_if(true, next));
         sum += composite_cell(cell, local, foot, inside);
         left &= ~inside;
-    } while (left != 0u);
+    } while (!is_empty(left));
     return sum / float(sample_count);
 }

@@ -1,7 +1,6 @@
 // The group of a cell's list that is being read, and the pixel as its coordinates have it.
+#include "shared/half_planes.glsl"
 #include "technique/static_decals/point.glsl"
-
-const uint all_samples = 0xFFFFFFFFu;
 
 // Whether strokes may have parts other than bars with discs at their ends, or are told by their distance.
 #if defined(STYLES) && (defined(JOINED) || defined(PATTERNS) || defined(BANDS) || defined(THOENY))
@@ -23,8 +22,8 @@ struct Group {
     vec2 from;         // from the last word's point to the centre
     vec2 before;       // from that of the word before it
     float half_width;  // of a line
-    uint covered;      // samples
-    uint beyond;       // of a line: those that may lie in the disc around its last point
+    uvec2 covered;      // samples
+    uvec2 beyond;       // of a line: those that may lie in the disc around its last point
 #ifdef STYLES
     bool clip;         // only cuts the next group off
     Style style;
@@ -40,14 +39,14 @@ struct Group {
 
 #ifdef BANDS
 const int most_bands = 16;
-uint within_band[most_bands];  // samples that the group's stroke covers up to each of its bands but the last
+uvec2 within_band[most_bands];  // samples that the group's stroke covers up to each of its bands but the last
 #endif
 
 Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     Group group;
     group.slot = header & SLOT_MASK;
     group.line = is_line(header);
-    group.covered = (header & COVERS) != 0u ? all_samples : 0u;
+    group.covered = (header & COVERS) != 0u ? all_samples : no_samples;
     float scale = 1.0;
     group.half_width = 0.0;
 #if defined(STYLES)
@@ -78,7 +77,7 @@ Group group_of(uint header, float bias, vec2 local, mat2 foot) {
     precise vec2 corner = group.at - bias;
     group.corner = corner;
     group.from = group.before = vec2(0.0);
-    group.beyond = 0u;
+    group.beyond = no_samples;
     return group;
 }
 

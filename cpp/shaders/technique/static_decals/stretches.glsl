@@ -3,7 +3,6 @@
 // Stretches that are wide against the pixel are cut out by half planes. Of finer ones, where each half plane would be
 // rounded by itself, samples are asked one by one, and as many of them are taken as is the stretches' share of the pixel.
 #include "shared/half_planes.glsl"
-#include "shared/sample_offsets.glsl"
 
 const float finest_period = 0.75;  // in pixels
 
@@ -46,26 +45,26 @@ vec2 turns_of(Phase phase, float begin, float end) {
     return is_fine(phase) ? vec2(0.0) : vec2(ceil(phase.centre - phase.reach - end), floor(phase.centre + phase.reach - begin));
 }
 
-uint samples_between(Phase phase, float begin, float end) {
+uvec2 samples_between(Phase phase, float begin, float end) {
     return samples_beyond(phase.direction, phase.centre - begin) & ~samples_beyond(phase.direction, phase.centre - end);
 }
 
 // Of these samples, those in stretches that are fine.
-uint samples_in_fine(Phase phase, float begin, float end, uint samples) {
-    int count = int(clamp(stretch_share(phase, begin, end), 0.0, 1.0) * float(bitCount(samples)) + 0.5);
-    uint mask = 0u;
+uvec2 samples_in_fine(Phase phase, float begin, float end, uvec2 samples) {
+    int count = int(clamp(stretch_share(phase, begin, end), 0.0, 1.0) * float(count_of(samples)) + 0.5);
+    uvec2 mask = no_samples;
     int i = 0;
     do {
         float at = fract(phase.centre + dot(phase.growth, sample_offsets[i]) - begin);
-        mask |= uint(at <= end - begin) << i;
+        mask |= sample_if(at <= end - begin, i);
     } while (++i < sample_count && is_fine(phase));
     mask &= samples;
     int missing;
     do {
-        uint others = samples & ~mask;
-        missing = count - bitCount(mask);
-        if (missing > 0) mask |= others & (~others + 1u);
-        if (missing < 0) mask &= mask - 1u;
+        uvec2 others = samples & ~mask;
+        missing = count - count_of(mask);
+        if (missing > 0) mask = samples & ~without_first(others);
+        if (missing < 0) mask = without_first(mask);
     } while (abs(missing) > 1 && is_fine(phase));
-    return is_fine(phase) ? mask : 0u;
+    return is_fine(phase) ? mask : no_samples;
 }

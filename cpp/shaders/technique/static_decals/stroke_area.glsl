@@ -5,7 +5,7 @@
 
 // An edge between `from` and `to`, which lead from its ends to the pixel's centre, decides for all samples alike, or for
 // each by itself.
-const uint for_each = 1u;  // no mask of all samples or none
+const uint for_all = 0xFFFFFFFFu, for_none = 0u, for_each = 1u;
 uint alike_in_stroke(Group group, vec2 from, vec2 to) {
     vec2 along = from - to;
     float length2 = dot(along, along);
@@ -21,30 +21,30 @@ uint alike_in_stroke(Group group, vec2 from, vec2 to) {
     float outer = group.half_width + group.reach, inner = max(group.half_width - group.reach, 0.0);
     float from_end2 = dot(to, to);
     bool is_point = length2 == 0.0;
-    if (is_point ? from_end2 > outer * outer : apart) return 0u;
+    if (is_point ? from_end2 > outer * outer : apart) return for_none;
     bool near_line = t >= 0.0 && t <= length2 && across * across < inner * inner * length2;
-    return from_end2 < inner * inner || near_line || within && !is_point ? all_samples : for_each;
+    return from_end2 < inner * inner || near_line || within && !is_point ? for_all : for_each;
 }
 
 // Of these samples, those in the disc around a point; `from` leads from it to the pixel's centre.
 //
 // Where the pixel is small against the disc, those beyond the line along its border there, moved inwards by what the
 // border bends away from it on the mean: the 24th part of the squared chord over the radius.
-uint samples_in_disc(Group group, vec2 from, float radius, uint samples) {
-    uint left = samples;
+uvec2 samples_in_disc(Group group, vec2 from, float radius, uvec2 samples) {
+    uvec2 left = samples;
     float away = length(from);
     vec2 inwards = -from / max(away, 1e-6) * group.foot;
     float chord = abs(determinant(group.foot)) / max(2.0 * half_extent(inwards), 1e-30);
     bool is_flat = group.reach <= 0.75 * radius;
-    uint mask = samples & samples_beyond(direction_of(inwards), radius - chord * chord / (24.0 * radius) - away);
+    uvec2 mask = samples & samples_beyond(direction_of(inwards), radius - chord * chord / (24.0 * radius) - away);
     if (is_flat) return mask;
-    mask = 0u;
+    mask = no_samples;
     do {
-        int i = max(findLSB(left), 0);
+        int i = first_of(left);
         vec2 at = from + group.foot * sample_offsets[i];
-        mask |= uint(dot(at, at) <= radius * radius) << i;
-        left &= left - 1u;
-    } while (left != 0u);
+        mask |= sample_if(dot(at, at) <= radius * radius, i);
+        left = without_first(left);
+    } while (!is_empty(left));
     return mask & samples;
 }
 
@@ -56,8 +56,8 @@ struct Bar {
     float s;            // and across it
     Direction onwards;
     Direction across;
-    uint begun;         // samples beyond its beginning
-    uint ended;         // and beyond its end
+    uvec2 begun;        // samples beyond its beginning
+    uvec2 ended;        // and beyond its end
 };
 
 Bar bar_of(Group group, vec2 from, vec2 to) {
@@ -76,7 +76,7 @@ Bar bar_of(Group group, vec2 from, vec2 to) {
 }
 
 // Samples that are no farther from the edge's line.
-uint samples_beside(Bar bar, float half_width) {
+uvec2 samples_beside(Bar bar, float half_width) {
     return samples_beyond(bar.across, bar.s + half_width) & ~samples_beyond(bar.across, bar.s - half_width);
 }
 
@@ -94,10 +94,10 @@ uint alike_in_styled(Group group, vec2 from, vec2 to) {
     float past = t - clamp(t, 0.0, run);
     float across = abs(from.x * along.y - from.y * along.x) / max(run, 1e-6);
     float apart = run > 0.0 ? sqrt(across * across + past * past) : length(from);
-    if (apart > group.half_width * longest_reach(group.style) + group.reach) return 0u;
+    if (apart > group.half_width * longest_reach(group.style) + group.reach) return for_none;
     bool beside = abs(past) == 0.0 && t >= group.reach && t + group.reach <= run;
     bool even = !has(group.style, STYLE_PATTERN | STYLE_BANDS);
-    return even && beside && across + group.reach <= group.half_width ? all_samples : for_each;
+    return even && beside && across + group.reach <= group.half_width ? for_all : for_each;
 }
 
 // Reads a stroke's next point, and says whether its edge decides for all samples alike.
@@ -113,12 +113,12 @@ uint next_alike(inout Group group, uint word, vec2 from, vec2 to) {
     group.pen_before = group.pen;
     if (!starts) move_on(group.pen, group.style, from, to, group.run);
     bool joined = has(group.style, STYLE_JOINED);
-    return starts && joined ? 0u : alike_in_styled(group, from, to);
+    return starts && joined ? for_none : alike_in_styled(group, from, to);
 }
 
 #ifdef JOINED
 // The corner before an edge, after one whose direction is `came`: what corner_share tells of a point.
-uint samples_in_corner(Group group, vec2 from, vec2 came, Bar next, float half_width, uint samples) {
+uvec2 samples_in_corner(Group group, vec2 from, vec2 came, Bar next, float half_width, uvec2 samples) {
     vec2 axis = normalize(came);
     float cosine = dot(axis, next.axis);
     bool is_bevel = has(group.style, STYLE_BEVEL);
@@ -126,39 +126,39 @@ uint samples_in_corner(Group group, vec2 from, vec2 came, Bar next, float half_w
     vec2 side = vec2(axis.y, -axis.x);
     Direction across = direction_of(side * group.foot);
     float s = dot(from, side);
-    uint beside = samples_beyond(across, s + half_width) & ~samples_beyond(across, s - half_width);
-    uint mask = samples_beyond(direction_of(axis * group.foot), dot(from, axis)) & ~next.begun & beside;
+    uvec2 beside = samples_beyond(across, s + half_width) & ~samples_beyond(across, s - half_width);
+    uvec2 mask = samples_beyond(direction_of(axis * group.foot), dot(from, axis)) & ~next.begun & beside;
     mask &= samples_beside(next, half_width);
     vec2 u = axis - next.axis;
     float reach = length(u) * sqrt(max(0.5 * (1.0 + cosine), 0.0));
     // A line that goes straight on has no cut, and no corner either.
     if (is_bevel && dot(u, u) > 1e-8) mask &= samples_beyond(direction_of(-u * group.foot), half_width * reach - dot(from, u));
-    uint disc = samples_in_disc(group, from, half_width, pointed ? 0u : samples);
+    uvec2 disc = samples_in_disc(group, from, half_width, pointed ? no_samples : samples);
     return pointed ? mask & samples : disc;
 }
 #endif
 
 #ifdef PATTERNS
 // Samples in the marks of a stroke's pattern, as far as they are wide. `run`: the edge's length on the map.
-uint samples_in_pattern(Group group, Bar bar, float periods, float run) {
+uvec2 samples_in_pattern(Group group, Bar bar, float periods, float run) {
     float per_unit = run / max(bar.run, 1e-6) * group.style.periods_per_unit;
     Phase phase = phase_of(periods + bar.t * per_unit, bar.axis * group.foot * per_unit);
     vec2 across = vec2(bar.axis.y, -bar.axis.x) * group.foot;
-    uint mask = 0u;
+    uvec2 mask = no_samples;
     int i = 0;
     do {
         vec4 mark = record_texel(group.style.record + 1 + i);
         // Fine marks are as wide as they are on the mean.
-        uint fine = samples_beside(bar, group.half_width * 0.5 * (mark.z + mark.w)) & bar.begun & ~bar.ended;
+        uvec2 fine = samples_beside(bar, group.half_width * 0.5 * (mark.z + mark.w)) & bar.begun & ~bar.ended;
         fine = samples_in_fine(phase, mark.x, mark.y, fine);
         float widens = group.half_width * (mark.w - mark.z) / max(mark.y - mark.x, 1e-9);
         Direction left = direction_of(widens * phase.growth + across), right = direction_of(widens * phase.growth - across);
         vec2 turns = turns_of(phase, mark.x, mark.y);
-        uint marks = 0u;
+        uvec2 marks = no_samples;
         do {
             float half_width = group.half_width * mark.z + widens * (phase.centre - turns.x - mark.x);
-            uint beside = samples_beyond(left, half_width + bar.s) & samples_beyond(right, half_width - bar.s);
-            uint inside = beside & samples_between(phase, turns.x + mark.x, turns.x + mark.y);
+            uvec2 beside = samples_beyond(left, half_width + bar.s) & samples_beyond(right, half_width - bar.s);
+            uvec2 inside = beside & samples_between(phase, turns.x + mark.x, turns.x + mark.y);
             if (turns.x <= turns.y) marks |= inside;
             turns.x += 1.0;
         } while (turns.x <= turns.y);
@@ -173,7 +173,7 @@ void add_styled(inout Group group, vec2 from, vec2 to) {
     Bar bar = bar_of(group, from, to);
     bool joined = has(group.style, STYLE_JOINED);
     bool is_disc = from == to;
-    uint marks = is_disc ? 0u : bar.begun & ~bar.ended;
+    uvec2 marks = is_disc ? no_samples : bar.begun & ~bar.ended;
     float width = 1.0;
 #ifdef PATTERNS
     if (has(group.style, STYLE_PATTERN)) {
@@ -188,7 +188,7 @@ void add_styled(inout Group group, vec2 from, vec2 to) {
     int i = 0;
     do {
         float reach = 1.0;
-        uint covered = group.covered;
+        uvec2 covered = group.covered;
 #ifdef BANDS
         if (i < bands - 1) {
             reach = uintBitsToFloat(texelFetch(style_records, band_record(group.style) + i).x);
@@ -214,12 +214,12 @@ void add_styled(inout Group group, vec2 from, vec2 to) {
 // ends; or, where there is no edge, what the disc around the end of the edge before adds.
 void add_edge(inout Group group, vec2 from, vec2 to, bool is_edge) {
     Bar bar = bar_of(group, from, to);
-    uint beside = samples_beside(bar, group.half_width);
+    uvec2 beside = samples_beside(bar, group.half_width);
     if (is_edge) group.covered |= beside & bar.begun & ~bar.ended;
-    uint corner = group.beyond & ~group.covered;
+    uvec2 corner = group.beyond & ~group.covered;
     if (is_edge) corner &= beside & ~bar.begun;
     group.covered |= samples_in_disc(group, from, group.half_width, corner);
-    group.beyond = is_edge ? beside & bar.ended : 0u;
+    group.beyond = is_edge ? beside & bar.ended : no_samples;
 }
 #endif
 
@@ -227,10 +227,10 @@ void add_edge(inout Group group, vec2 from, vec2 to, bool is_edge) {
 // Whether a stroke's next edge decides for all samples alike. A point that starts an edge does not where the edge before
 // may end in this pixel.
 uint next_alike(inout Group group, bool starts) {
-    bool open_end = group.beyond != 0u;
+    bool open_end = !is_empty(group.beyond);
     uint alike = alike_in_stroke(group, group.before, group.from);
-    if (starts) alike = open_end ? for_each : 0u;
-    if (alike != for_each) group.beyond = starts ? all_samples : 0u;
+    if (starts) alike = open_end ? for_each : for_none;
+    if (alike != for_each) group.beyond = starts ? all_samples : no_samples;
     return alike;
 }
 #endif

@@ -87,7 +87,7 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
     upload_styles(next.get(), next_lens.get());
     refresh_levels(*next, next_lens.get());
     if (!no_vertices_) {
-        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_R32UI, make_half_planes());
+        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_RG32UI, make_half_planes());
         no_vertices_ = gl::VertexArray::create();
     }
     prepared_ = std::move(next);
