@@ -135,28 +135,4 @@ MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terra
     return matched;
 }
 
-SegmentList all_segments(const MatchedLines& lines, const MemoryAccount& memory, gl::ProgramLibrary& programs) {
-    SegmentList list;
-    list.most = lines.segment_count;
-    list.segments = make_records(memory, "segments", list.most);
-    const uint32_t words[] = {list.most, 1, 0, 0};
-    list.count = gl::Buffer::create(memory, "dynamic: segments", sizeof(words), words);
-    gl::Program& program = programs.get("dynamic_all_segments");
-    program.set("line_vertices", 0);
-    lines.vertices.bind(0);
-    program.set("line_records", 1);
-    lines.lines.bind(1);
-    dispatch(program, lines.vertex_count, [&](uint32_t first, uint32_t items) {
-        // As many segments as vertices at most lie between; which the first one is, its line says.
-        uint32_t line = 0;
-        lines.vertices.buffer().read(sizeof(MatchedVertex) * first + offsetof(MatchedVertex, line),
-                                     sizeof(uint32_t), &line);
-        const uint32_t begin = (first - line) & ~15U;  // where a storage block may begin
-        program.set("first_segment", begin);
-        bind_records(0, list.segments.buffer(), sizeof(LineSegment), begin,
-                     std::min(list.most - begin, items + 16));
-    });
-    return list;
-}
-
 }  // namespace decalgl

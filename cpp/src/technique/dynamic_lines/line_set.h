@@ -39,10 +39,7 @@ MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terra
 struct SegmentList {
     gl::TextureBuffer segments;  // LineSegment, RGBA32UI
     gl::Buffer count;
-    uint32_t most = 0;  // segments that there is room for
+    uint32_t most = 0;  // segments: no more than these
 };
-
-// Every segment of all lines, as if a view showed them all.
-SegmentList all_segments(const MatchedLines& lines, const MemoryAccount& memory, gl::ProgramLibrary& programs);
 
 }  // namespace decalgl
