@@ -7,7 +7,9 @@
 #include "technique/dynamic_lines/bins.h"
 #include "technique/dynamic_lines/line_looks.h"
 #include "technique/dynamic_lines/line_set.h"
+#include "technique/dynamic_lines/lists.h"
 #include "technique/dynamic_lines/prepared_lines.h"
+#include "technique/dynamic_lines/update_segments.h"
 
 namespace decalgl {
 
@@ -25,14 +27,20 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
+    LineMethod method_for(const View& view, uint32_t segments) const;
+    ListedLines listed() const;
+
     gl::ProgramLibrary programs_;  // of upload and update
     MemoryAccount memory_;
     std::shared_ptr<const PreparedLines> prepared_;
     std::shared_ptr<const PreparedLines> lens_;  // null without one
     MatchedLines lines_;
-    SegmentList segments_;
+    std::unique_ptr<SegmentUpdate> segments_;  // null without lines
     LineLooks looks_;
+    glm::vec2 ground_heights_{0.0F};        // the lowest and the highest of the terrain
+    LineMethod method_ = LineMethod::bins;  // of the latest view
     std::unique_ptr<LineBins> bins_;
+    std::unique_ptr<LineLists> lists_;
 };
 
 }  // namespace decalgl

@@ -45,8 +45,8 @@ uint64_t matched_vertices(const PreparedLines& prepared, double longest) {
 
 gl::TextureBuffer make_records(const MemoryAccount& memory, const std::string& name, uint64_t count,
                                const void* data = nullptr) {
-    return gl::TextureBuffer::create(memory, "dynamic: " + name, GL_RGBA32UI,
-                                     16 * std::max<uint64_t>(count, 1), data);
+    return gl::TextureBuffer::create(memory, "dynamic: " + name, GL_RGBA32UI, 16 * std::max<uint64_t>(count, 1),
+                                     data);
 }
 
 void bind_source(gl::Program& program, const gl::TextureBuffer& vertices, const gl::TextureBuffer& lines) {
@@ -81,8 +81,8 @@ void LatticeBase::set(gl::Program& program) const {
     program.set("quantum", quantum);
 }
 
-MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terrain,
-                         const MemoryAccount& memory, gl::ProgramLibrary& programs) {
+MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terrain, const MemoryAccount& memory,
+                         gl::ProgramLibrary& programs) {
     const MatchGrid grid = match_grid(prepared.lattice, *terrain.samples);
     const uint64_t total = matched_vertices(prepared, grid.steps.y);
     if (total > most_matched)
@@ -94,7 +94,8 @@ MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terra
     MatchedLines matched;
     matched.lattice = prepared.lattice;
     matched.line_count = static_cast<uint32_t>(prepared.lines.size());
-    const gl::TextureBuffer vertices = make_records(memory, "source", source_count, prepared.vertices.data());
+    const gl::TextureBuffer vertices =
+        make_records(memory, "source", source_count, prepared.vertices.data());
     const gl::TextureBuffer lines = make_records(memory, "source", matched.line_count, prepared.lines.data());
     // A word more, which becomes the sum of all.
     gl::TextureBuffer offsets = gl::TextureBuffer::create(memory, "dynamic: source", GL_R32UI,
@@ -132,31 +133,6 @@ MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terra
         bind_records(0, matched.lines.buffer(), sizeof(LineRecord), first, items);
     });
     return matched;
-}
-
-SegmentList all_segments(const MatchedLines& lines, const MemoryAccount& memory,
-                         gl::ProgramLibrary& programs) {
-    SegmentList list;
-    list.most = lines.segment_count;
-    list.segments = make_records(memory, "segments", list.most);
-    const uint32_t words[] = {list.most, 1, 0, 0};
-    list.count = gl::Buffer::create(memory, "dynamic: segments", sizeof(words), words);
-    gl::Program& program = programs.get("dynamic_all_segments");
-    program.set("line_vertices", 0);
-    lines.vertices.bind(0);
-    program.set("line_records", 1);
-    lines.lines.bind(1);
-    dispatch(program, lines.vertex_count, [&](uint32_t first, uint32_t items) {
-        // As many segments as vertices at most lie between; which the first one is, its line says.
-        uint32_t line = 0;
-        lines.vertices.buffer().read(sizeof(MatchedVertex) * first + offsetof(MatchedVertex, line),
-                                     sizeof(uint32_t), &line);
-        const uint32_t begin = (first - line) & ~15U;  // where a storage block may begin
-        program.set("first_segment", begin);
-        bind_records(0, list.segments.buffer(), sizeof(LineSegment), begin,
-                     std::min(list.most - begin, items + 16));
-    });
-    return list;
 }
 
 }  // namespace decalgl
