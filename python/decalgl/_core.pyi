@@ -136,6 +136,7 @@ class LoopsBvh:
     primary_branching: Sequence[int]
     node_capacity: int
     largest_share: float
+    summary: int
     secondary_depths: Sequence[int]
     secondary_branching: Sequence[int]
     coverage_depth: int

@@ -103,6 +103,8 @@ class LoopsBvh:
     minimum_coverage: the share of the nodes there that a primitive meets, from which on it stays in the node.
     largest_share: of a primary node's primitives that its children may hold on average; else it is not divided, as
         where wide lines lie all over it. The paper divides always: 1.
+    summary: how many primitives a divided primary node keeps, those that are active longest. Where no others are, a walk
+        ends with them. The paper has none: 0.
     """
 
     primary_branching: tuple[int, ...] = ()
@@ -112,6 +114,7 @@ class LoopsBvh:
     coverage_depth: int = 2
     minimum_coverage: float = 1.0
     largest_share: float = 1.0
+    summary: int = 0
 
     def core(self) -> _core.LoopsBvh:
         """As the core takes it. Raises InputError."""
@@ -124,6 +127,7 @@ class LoopsBvh:
             bvh.coverage_depth = self.coverage_depth
             bvh.minimum_coverage = self.minimum_coverage
             bvh.largest_share = self.largest_share
+            bvh.summary = self.summary
         except TypeError:
             raise InputError(
                 f"LoopsBvh: numbers must be whole and zero or more, but this is {self!r}."
@@ -133,7 +137,7 @@ class LoopsBvh:
 
 # Table 1 of the paper. Its "replica" of LOCALIS divides the primary root whatever it holds.
 NAMED_BVHS: dict[str, LoopsBvh] = {
-    "fitted": LoopsBvh(node_capacity=24, largest_share=0.4),
+    "fitted": LoopsBvh(node_capacity=24, largest_share=0.25, summary=48),
     "replica": LoopsBvh((16,), 0, (0, 10), (4,) * 10),
     "constant": LoopsBvh((100,) * 4),
     "descending": LoopsBvh((576, 256, 100, 36)),

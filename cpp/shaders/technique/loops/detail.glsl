@@ -5,8 +5,8 @@
 //           ______ \______               tolerance everywhere in it. Regions of parents hold those of their
 //          |       ..     | highest      children, so their bounds are no greater, and no child is active alone.
 //          |______________| lowest
-#include "technique/loops/lists.glsl"
 
+uniform float quantum;        // metres
 uniform float length_scale;   // metres of a length of 1
 uniform float uniform_bound;  // metres
 #if defined(SCREEN) || defined(BY_DISTANCE)

@@ -8,8 +8,12 @@
 //
 // A node covers a box. Words that lead on count from the node's first word; 0: nothing there.
 //
-//     primary     secondary node, side, child ...        side x side children, row by row; side 0: a leaf
-//     secondary   list, side, child ...
+//     primary     secondary node, side 0                 a leaf
+//                 summary, side, width, height, child ...    side x side children of that many quanta, row by row
+//     summary     error | radius, lowest | highest, list     the activation, around the middle of the node's box, of all
+//                 that is not in the list: where it is not active, the list is all there is
+//     secondary   list, side 0                           a leaf
+//                 list, side, width, height, child ...
 //     list        number of words that follow, groups
 //     group       slot << 8 | count, primitive ...       topmost slot first; a slot may have several groups
 //
@@ -34,8 +38,9 @@
 #define GROUP_COUNT_BITS 8
 #define GROUP_COUNT_MASK 255u
 
-// Words of a node before its children.
-#define NODE_WORDS 2u
+// Words of a leaf, and of another node before its children.
+#define LEAF_WORDS 2u
+#define NODE_WORDS 4u
 
 // The most lists that a position may have: a secondary tree's path.
 #define LOOPS_MOST_LISTS 12

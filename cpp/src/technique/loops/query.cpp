@@ -49,8 +49,7 @@ public:
 private:
     size_t child(size_t node, LatticeBox& box) const {
         const int64_t side = words_[node + 1];
-        const int64_t width = (int64_t{box.max_x} - box.min_x + side) / side;
-        const int64_t height = (int64_t{box.max_y} - box.min_y + side) / side;
+        const int64_t width = words_[node + 2], height = words_[node + 3];
         const int64_t column = (int64_t{point_.x} - box.min_x) / width, row = (int64_t{point_.y} - box.min_y) / height;
         const LatticeBox own = box;
         box.min_x = static_cast<int32_t>(own.min_x + column * width);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
+#include "technique/loops/half_float.h"
 
 namespace decalgl::loops {
 namespace {
@@ -60,6 +62,131 @@ struct Division {
     }
 };
 
+// What a node's walk may end with: the items that stay active longest, and a region that holds those of all the
+// others. Where that is not active, none of them is (activation.h).
+struct Summary {
+    Items kept;
+    uint32_t error_and_radius = 0;
+    uint32_t lowest_and_highest = 0;
+};
+
+class Summarizer {
+public:
+    Summarizer(const Shapes& shapes, uint32_t size) : shapes_(shapes), size_(size) {}
+
+    // Nothing is kept where the node holds little more, or nearly all of it is always active.
+    Summary summarize(const Items& items, const LatticeBox& box) const {
+        Summary summary;
+        const size_t most = std::min<size_t>(4 * size_t{size_}, items.size() / 2);
+        if (size_ == 0 || items.size() < 2 * size_t{size_})
+            return summary;
+        std::vector<double> weights(items.size());
+        for (size_t i = 0; i < items.size(); ++i)
+            weights[i] = weight_of(items[i]);
+        std::vector<double> sorted = weights;
+        const auto last_kept = sorted.begin() + static_cast<ptrdiff_t>(size_ - 1);
+        std::nth_element(sorted.begin(), last_kept, sorted.end(), std::greater<>());
+        // Of equal ones all go, or all stay where they always do.
+        const double least = *last_kept;
+        const bool stays = std::isinf(least);
+        for (size_t i = 0; i < items.size(); ++i)
+            if (weights[i] > least || (stays && weights[i] == least))
+                summary.kept.push_back(items[i]);
+        if (summary.kept.empty() || summary.kept.size() > most)
+            return {};
+        bound_others(items, weights, least, stays, box, summary);
+        return summary;
+    }
+
+    // Of the middle of a box, as the shaders find it.
+    static LatticePoint middle(const LatticeBox& box) {
+        return {static_cast<int32_t>(box.min_x + (int64_t{box.max_x} - box.min_x) / 2),
+                static_cast<int32_t>(box.min_y + (int64_t{box.max_y} - box.min_y) / 2)};
+    }
+
+private:
+    const Activation& activation_of(Item item) const {
+        return shapes_.hierarchy->activations[shapes_.generator_of(item)];
+    }
+    static double error_in(const Activation& a) { return half_to_double(static_cast<uint16_t>(a.error_and_radius)); }
+    static double radius_in(const Activation& a) {
+        return half_to_double(static_cast<uint16_t>(a.error_and_radius >> 16));
+    }
+
+    // Regions matter where they are much larger than what shows of their errors.
+    double weight_of(Item item) const {
+        const Activation& a = activation_of(item);
+        return std::max(error_in(a), 0.01 * radius_in(a));
+    }
+
+    void bound_others(const Items& items, const std::vector<double>& weights, double least, bool stays,
+                      const LatticeBox& box, Summary& summary) const {
+        double error = 0.0, radius = 0.0;
+        uint32_t lowest = 0xFFFF, highest = 0;
+        for (size_t i = 0; i < items.size(); ++i) {
+            if (weights[i] > least || (stays && weights[i] == least))
+                continue;
+            const Activation& a = activation_of(items[i]);
+            error = std::max(error, error_in(a));
+            radius = std::max(radius, radius_in(a) + length_scale * distance_between(middle(box), {a.x, a.y}));
+            lowest = std::min(lowest, a.lowest_and_highest & 0xFFFF);
+            highest = std::max(highest, a.lowest_and_highest >> 16);
+        }
+        // A little more, against the shaders' rounding.
+        summary.error_and_radius = half_not_below(error) | uint32_t{half_not_below(1.001 * radius)} << 16;
+        summary.lowest_and_highest = lowest | highest << 16;
+    }
+
+    const Shapes& shapes_;
+    uint32_t size_;
+};
+
+void write_list(Span<const Item> items, LargeArray<uint32_t>& words, TreeCounts& counts) {
+    if (items.empty())
+        return;
+    const size_t begin = words.size();
+    words.push_back(0);
+    size_t group = 0;
+    for (size_t i = 0; i < items.size(); ++i) {
+        const bool begins = i == 0 || items[i].slot != items[i - 1].slot ||
+                            (words[group] & GROUP_COUNT_MASK) == GROUP_COUNT_MASK;
+        if (begins) {
+            group = words.size();
+            words.push_back(items[i].slot << GROUP_COUNT_BITS);
+        }
+        ++words[group];
+        words.push_back(items[i].primitive);
+    }
+    words[begin] = static_cast<uint32_t>(words.size() - begin - 1);
+    counts.references += items.size();
+}
+
+// Appends a node that is divided, whose children are not known yet, up to its list.
+void write_node(bool has_list, const Division& division, LargeArray<uint32_t>& words, TreeCounts& counts) {
+    const size_t node = words.size(), children = size_t{division.side} * division.side;
+    ++counts.nodes;
+    words.push_back(has_list ? static_cast<uint32_t>(NODE_WORDS + children) : 0);
+    words.push_back(division.side);
+    words.push_back(static_cast<uint32_t>(division.width));
+    words.push_back(static_cast<uint32_t>(division.height));
+    words.resize(node + NODE_WORDS + children, 0);
+}
+
+void write_leaf(bool has_list, LargeArray<uint32_t>& words, TreeCounts& counts) {
+    ++counts.nodes;
+    words.push_back(has_list ? LEAF_WORDS : 0);
+    words.push_back(0);
+}
+
+void write_divided(const Summary& summary, const Division& division, LargeArray<uint32_t>& words, TreeCounts& counts) {
+    write_node(!summary.kept.empty(), division, words, counts);
+    if (summary.kept.empty())
+        return;
+    words.push_back(summary.error_and_radius);
+    words.push_back(summary.lowest_and_highest);
+    write_list(summary.kept, words, counts);
+}
+
 class SubtreeBuilder {
 public:
     SubtreeBuilder(const Shapes& shapes, const LoopsBvh& settings, Tree& tree)
@@ -68,22 +195,20 @@ public:
     // Appends a primary node and whatever is below; gives its place.
     size_t primary(Items items, const LatticeBox& box, size_t level) {
         const size_t node = words_.size();
-        ++counts_.nodes;
         std::vector<Items> parts;
         if (level < settings_.primary_branching.size() && items.size() > settings_.node_capacity)
             parts = distribute(items, Division(box, settings_.primary_branching[level]));
         if (!is_worth_it(items, parts)) {
             parts.clear();
-            words_.insert(words_.end(), {NODE_WORDS, 0});
+            write_leaf(true, words_, counts_);
             const size_t depth = level < settings_.secondary_depths.size() ? settings_.secondary_depths[level] : 0;
             secondary(std::move(items), box, 0, depth, 0);
             return node;
         }
-        items = Items();
         const Division division(box, settings_.primary_branching[level]);
         const size_t children = parts.size();
-        words_.insert(words_.end(), {0, division.side});
-        words_.resize(node + NODE_WORDS + children, 0);
+        write_divided(Summarizer(shapes_, settings_.summary).summarize(items, box), division, words_, counts_);
+        items = Items();
         for (uint32_t i = 0; i < children; ++i)
             if (!parts[i].empty()) {
                 const size_t child = primary(std::move(parts[i]), division.child(i), level + 1);
@@ -123,7 +248,6 @@ private:
     // `above`: primitives in the nodes that this one lies in.
     size_t secondary(Items items, const LatticeBox& box, size_t level, size_t depth, uint64_t above) {
         const size_t node = words_.size();
-        ++counts_.nodes;
         Items kept;
         std::vector<Items> parts;
         if (level < depth) {
@@ -140,17 +264,17 @@ private:
         }
         items = Items();
         const bool divided = std::any_of(parts.begin(), parts.end(), [](const Items& part) { return !part.empty(); });
-        const size_t children = divided ? parts.size() : 0;
-        words_.push_back(kept.empty() ? 0 : static_cast<uint32_t>(NODE_WORDS + children));
-        words_.push_back(divided ? static_cast<uint32_t>(std::lrint(std::sqrt(double(children)))) : 0);
-        words_.resize(node + NODE_WORDS + children, 0);
-        write_list(kept);
+        if (divided)
+            write_node(!kept.empty(), Division(box, settings_.secondary_branching[level]), words_, counts_);
+        else
+            write_leaf(!kept.empty(), words_, counts_);
+        write_list(kept, words_, counts_);
         const uint64_t walk = above + kept.size();
         counts_.longest_walk = std::max(counts_.longest_walk, walk);
         if (!divided)
             return node;
         const Division division(box, settings_.secondary_branching[level]);
-        for (uint32_t i = 0; i < children; ++i)
+        for (uint32_t i = 0; i < parts.size(); ++i)
             if (!parts[i].empty()) {
                 const size_t child = secondary(std::move(parts[i]), division.child(i), level + 1, depth, walk);
                 words_[node + NODE_WORDS + i] = static_cast<uint32_t>(child - node);
@@ -177,26 +301,6 @@ private:
         each_child(item, division, [&](uint32_t child) { count_met(item, division.child(child), level + 1, end, met); });
     }
 
-    void write_list(Span<const Item> items) {
-        if (items.empty())
-            return;
-        const size_t begin = words_.size();
-        words_.push_back(0);
-        size_t group = 0;
-        for (size_t i = 0; i < items.size(); ++i) {
-            const bool begins = i == 0 || items[i].slot != items[i - 1].slot ||
-                                (words_[group] & GROUP_COUNT_MASK) == GROUP_COUNT_MASK;
-            if (begins) {
-                group = words_.size();
-                words_.push_back(items[i].slot << GROUP_COUNT_BITS);
-            }
-            ++words_[group];
-            words_.push_back(items[i].primitive);
-        }
-        words_[begin] = static_cast<uint32_t>(words_.size() - begin - 1);
-        counts_.references += items.size();
-    }
-
     const Shapes& shapes_;
     const LoopsBvh& settings_;
     LargeArray<uint32_t>& words_;
@@ -208,9 +312,9 @@ struct TopNode {
     Items items;
     LatticeBox box;
     size_t level;
-    uint32_t side = 0;
+    uint32_t side = 0;               // 0: built by one of them
     std::vector<uint32_t> children;  // places in the list; 0: nothing there
-    Tree subtree;
+    Tree subtree;                    // or the node itself, which is divided
 };
 
 class TreeBuilder {
@@ -246,6 +350,8 @@ private:
         parallel_for(items.size(), grain, threads_, [&](size_t begin, size_t end) {
             blocks[begin / grain] = builder.distribute(Span<const Item>(items).subspan(begin, end - begin), division);
         });
+        const Summary summary = Summarizer(shapes_, settings_.summary).summarize(items, nodes_[place].box);
+        write_divided(summary, division, nodes_[place].subtree.words, nodes_[place].subtree.counts);
         nodes_[place].side = division.side;
         nodes_[place].children.assign(children, 0);
         for (uint32_t child = 0; child < children; ++child) {
@@ -266,9 +372,9 @@ private:
         uint64_t total = 0;
         for (size_t i = 0; i < nodes_.size(); ++i) {
             places[i] = total;
-            total += nodes_[i].side > 0 ? NODE_WORDS + nodes_[i].children.size() : nodes_[i].subtree.words.size();
+            total += nodes_[i].subtree.words.size();
             const TreeCounts& counts = nodes_[i].subtree.counts;
-            tree.counts.nodes += nodes_[i].side > 0 ? 1 : counts.nodes;
+            tree.counts.nodes += counts.nodes;
             tree.counts.references += counts.references;
             tree.counts.longest_walk = std::max(tree.counts.longest_walk, counts.longest_walk);
         }
@@ -280,13 +386,8 @@ private:
         tree.words.resize(total);
         for (size_t i = 0; i < nodes_.size(); ++i) {
             uint32_t* words = tree.words.data() + places[i];
-            if (nodes_[i].side == 0) {
-                std::copy(nodes_[i].subtree.words.begin(), nodes_[i].subtree.words.end(), words);
-                nodes_[i].subtree = {};
-                continue;
-            }
-            words[0] = 0;
-            words[1] = nodes_[i].side;
+            std::copy(nodes_[i].subtree.words.begin(), nodes_[i].subtree.words.end(), words);
+            nodes_[i].subtree = {};
             for (size_t c = 0; c < nodes_[i].children.size(); ++c) {
                 const uint32_t child = nodes_[i].children[c];
                 words[NODE_WORDS + c] = child == 0 ? 0 : static_cast<uint32_t>(places[child] - places[i]);
@@ -302,6 +403,16 @@ private:
 };
 
 }  // namespace
+
+uint32_t Shapes::generator_of(Item item) const {
+    const Refinement& refinement = hierarchy->refinement;
+    const uint32_t p = item.primitive & LOOPS_POINT_MASK;
+    if ((item.primitive & EDGE_FLAG) != 0)
+        return (item.primitive & EDGE_FROM_NEXT) != 0 ? p + 1 : p;
+    if (half_widths[item.slot] == 0.0F)
+        return p;
+    return refinement.parents[p] == refinement.right[p] ? refinement.right[p] : refinement.left[p];
+}
 
 LatticeBox Shapes::box_around(Item item) const {
     const LargeArray<LatticePoint>& points = hierarchy->arcs.points;
