@@ -24,7 +24,7 @@ SMALL_CROP = (56, 32)
 SAMPLES = 16
 # Where many pixels see more than one plane: a pixel's area is taken to lie on the plane at its centre.
 FOLDED = ("coast", "grazing", "nodata_holes")
-# Over the partly covered pixels of a crop: of the channel that differs most, the root mean square and the 99th percentile.
+# Root mean square and 99th percentile, over the partly covered pixels of a crop, of the channel that differs most.
 RMS, P99 = 0.015, 0.05
 # Of a vertex's quantum: where a cell border cuts an edge, the cut is rounded too.
 QUANTA = 1.5

@@ -1,7 +1,7 @@
 """Every scene of styles against the reference: ids and colours at pixel centres, coverage over pixels' areas.
 
-Without anti-aliasing each style meets one index, in turns. With coverage the grid is judged over areas in every scene, the
-published index at its places in every scene and over areas in half of them.
+Without anti-aliasing each style meets one index, in turns. With coverage the grid is judged over areas in every
+scene, the published index at its places in every scene and over areas in half of them.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ WIDE_CROP = (160, 90)
 CROP, SAMPLES = (36, 20), 32
 # Metres of a pixel's shorter side that are surely not drawn from levels of detail, which tell more than 32 places.
 NEAR = 0.6
-# Root mean square and 99th percentile, over the partly covered pixels of a crop, of the channel that differs most. Of 32
-# places with the right answers 0.024 and 0.08 remain on opaque edges.
+# Root mean square and 99th percentile, over the partly covered pixels of a crop, of the channel that differs most. Of
+# 32 places with the right answers 0.024 and 0.08 remain on opaque edges.
 RMS = {"grid": 0.015, "bvh": 0.03}
 P99 = {"grid": 0.05, "bvh": 0.09}
 # The largest difference from the exact area, of pixels that one straight edge crosses.
