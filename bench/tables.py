@@ -78,7 +78,6 @@ STACKS = {
 }
 CHANGES = {
     "scene": "{scene}",
-    "a frame": "{frame_ms:.0f} ms",
     "new colours": "{restyle:.2f}",
     "the picture after": "{restyled:.2f}",
     "a filter": "{filter:.2f}",
