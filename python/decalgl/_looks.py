@@ -29,6 +29,11 @@ if TYPE_CHECKING:
 COLOR_KEYWORDS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
 DECAL_KEYWORDS = (*COLOR_KEYWORDS, "width")
 KEYWORDS = (*DECAL_KEYWORDS, "order", "visible", "opacity", "by", "where", "outline", "casing")
+# Of layers and their outlines and casings; lists of what lies where are made for them.
+PREPARED = (
+    "corner", "miter_limit", "cap", "dash", "bands", "hatch", "slope_correction", "widest", "width_units",
+    "mode", "technique",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,6 +193,11 @@ def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
 def require_known(given: Mapping[str, Any], known: tuple[str, ...], name: str) -> None:
     """Raises StyleError, with close matches, for a keyword that is not known."""
     for key in given:
+        if key in PREPARED:
+            raise StyleError(
+                f"Layer {name!r}: {key}= is what the layer was prepared with. Change it where the layer is added, and"
+                " call preprocess(scene)."
+            )
         if key not in known:
             raise StyleError(
                 f"Layer {name!r}: there is no keyword {key!r} here.{close_matches(key, known)} Known are"
