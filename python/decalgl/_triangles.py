@@ -26,24 +26,41 @@ def triangles_of(features: FeatureTable) -> tuple[NDArray[np.float64], NDArray[n
 
 
 def _regions(features: FeatureTable) -> NDArray[np.object_]:
-    """(features,) valid polygons or collections of them; what has no area is an empty one."""
+    """(features,) polygons or collections of them; what has no area is an empty one."""
     rings, feature = _rings(features)
     regions = np.full(len(features.rows), shapely.Polygon(), dtype=object)
-    count = np.bincount(feature, minlength=len(regions))
-    single = count[feature] == 1
-    regions[feature[single]] = rings[single]
-    # Rings on their own may overlap: making the collection valid takes their symmetric difference.
-    several = np.flatnonzero(count > 1)
-    if several.size:
-        place = np.searchsorted(several, feature[~single])
-        regions[several] = shapely.multipolygons(rings[~single], indices=place)
-    invalid = np.flatnonzero(~shapely.is_valid(regions))
-    regions[invalid] = shapely.make_valid(regions[invalid], method="linework")
+    used, first, count = np.unique(feature, return_index=True, return_counts=True)
+    lines = np.full(len(regions), shapely.MultiLineString(), dtype=object)
+    if used.size:
+        lines[used] = shapely.multilinestrings(rings, indices=np.searchsorted(used, feature))
+    # Rings that meet nowhere lie in each other or beside each other.
+    simple = shapely.is_simple(lines)
+    single = used[count == 1]
+    regions[single] = shapely.polygons(rings[first[count == 1]])
+    nested = used[(count > 1) & simple[used]]
+    regions[nested] = shapely.build_area(lines[nested])
+    for index in used[~simple[used]].tolist():
+        regions[index] = _odd_faces(lines[index])
     return regions
 
 
+def _odd_faces(rings: shapely.MultiLineString) -> shapely.GeometryCollection:
+    """The faces between rings that lie in an odd number of them."""
+    faces = shapely.get_parts(shapely.polygonize([shapely.union_all(shapely.get_parts(rings))]))
+    points = shapely.get_coordinates(shapely.point_on_surface(faces))
+    inside = np.zeros(len(points), dtype=np.bool_)
+    for ring in shapely.get_parts(rings):
+        begin = shapely.get_coordinates(ring)
+        for (x0, y0), (x1, y1) in zip(begin[:-1], begin[1:], strict=True):
+            crosses = (points[:, 1] >= y0) != (points[:, 1] >= y1)
+            if crosses.any():
+                x = x0 + (points[crosses, 1] - y0) / (y1 - y0) * (x1 - x0)
+                inside[crosses] ^= x > points[crosses, 0]
+    return shapely.GeometryCollection(list(faces[inside]))
+
+
 def _rings(features: FeatureTable) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
-    """Each ring of three or more vertices as a polygon, and its feature."""
+    """Each ring of three or more vertices, closed, and its feature."""
     coords = np.asarray(features.coords, dtype=np.float64)
     length = np.diff(features.part_offsets)
     owner = np.repeat(np.arange(len(features.rows)), np.diff(features.feature_offsets))
@@ -57,4 +74,4 @@ def _rings(features: FeatureTable) -> tuple[NDArray[np.object_], NDArray[np.int6
     index = np.concatenate([renumbered[ring[vertices]], np.arange(len(first))])
     order = np.argsort(index, kind="stable")
     closed = shapely.linearrings(coords[place[order]], indices=index[order])
-    return shapely.polygons(closed), owner[kept].astype(np.int64)
+    return closed, owner[kept].astype(np.int64)

@@ -46,11 +46,9 @@ private:
     struct Entry {
         uint32_t decal;
         uint32_t first_corner;
+        uint32_t highest;  // group of this and those before it
     };
-    struct Cell {
-        std::vector<Entry> entries;
-        uint32_t highest = 0;  // of its entries' groups
-    };
+    using Cell = std::vector<Entry>;
 
     template <typename VolumeFn>
     void for_each_volume(uint32_t decal, VolumeFn use) const {
@@ -67,14 +65,14 @@ private:
     uint32_t lowest_group(uint32_t decal) const {
         uint32_t lowest = 0;
         const auto raise = [&](const Triangle& triangle, const Cell& cell) {
-            if (cell.entries.empty() || cell.highest < lowest)
-                return;
-            for (const Entry& entry : cell.entries) {
+            // The latest are the highest as a rule: then nothing below needs a look.
+            for (size_t i = cell.size(); i-- > 0 && cell[i].highest >= lowest;) {
+                const Entry& entry = cell[i];
                 const uint32_t needed = above(decal, entry.decal);
                 if (needed <= lowest)
                     continue;
-                const auto corner = [&](uint32_t i) {
-                    const VolumeVertex& at = prepared_.vertices[prepared_.corners[entry.first_corner + i] / 2];
+                const auto corner = [&](uint32_t k) {
+                    const VolumeVertex& at = prepared_.vertices[prepared_.corners[entry.first_corner + k] / 2];
                     return LatticePoint{at.x, at.y};
                 };
                 if (lie_over_each_other(triangle, {corner(0), corner(1), corner(2)}))
@@ -104,8 +102,8 @@ private:
             for_each_lid(prepared_, volume, [&](const Triangle& triangle, uint32_t first_corner) {
                 cells_.for_each(triangle, [&](size_t at) {
                     Cell& cell = in_cell_[at];
-                    cell.entries.push_back({decal, first_corner});
-                    cell.highest = std::max(cell.highest, group_of_[decal]);
+                    const uint32_t before = cell.empty() ? 0 : cell.back().highest;
+                    cell.push_back({decal, first_corner, std::max(before, group_of_[decal])});
                 });
             });
         });
@@ -159,8 +157,10 @@ public:
         : cells_(cells), prepared_(prepared), own_(cells.count(), 0) {}
 
     void begin_group(uint32_t most) {
+        for (const auto& [batch, cell] : filled_)
+            batches_[batch][cell] = 0;
+        filled_.clear();
         most_ = most;
-        used_ = 0;
     }
 
     uint32_t batch_of(const Volume& volume) {
@@ -170,6 +170,7 @@ public:
             ++batch;
         for (const size_t cell : touched_) {
             batches_[batch][cell] = static_cast<uint8_t>(batches_[batch][cell] + own_[cell]);
+            filled_.emplace_back(batch, cell);
             own_[cell] = 0;
         }
         return batch;
@@ -189,11 +190,8 @@ private:
     }
 
     bool fits(uint32_t batch) {
-        if (batch == used_) {
-            if (batches_.size() == used_)
-                batches_.emplace_back();
-            batches_[used_++].assign(cells_.count(), 0);
-        }
+        if (batch == batches_.size())
+            batches_.emplace_back(cells_.count(), uint8_t{0});
         return std::all_of(touched_.begin(), touched_.end(),
                            [&](size_t cell) { return batches_[batch][cell] + own_[cell] <= most_; });
     }
@@ -201,10 +199,10 @@ private:
     const OverlapCells& cells_;
     const PreparedVolumes& prepared_;
     uint32_t most_ = 0;
-    uint32_t used_ = 0;
     std::vector<uint8_t> own_;
     std::vector<size_t> touched_;
     std::vector<std::vector<uint8_t>> batches_;
+    std::vector<std::pair<uint32_t, size_t>> filled_;  // batches' cells that are not 0
 };
 
 // A volume's place: group, batch in it, and place on the map.

@@ -189,11 +189,11 @@ void ShadowVolumes::draw(const View& view, const GBufferView& gbuffer, gl::Progr
         if (in_hand_.empty())
             continue;
         glScissor(in_hand_.left, in_hand_.bottom, in_hand_.right - in_hand_.left, in_hand_.top - in_hand_.bottom);
+        mask.use();
         if (goes_on && !is_opaque) {
             fold();
             continue;
         }
-        mask.use();
         const float alpha = static_cast<float>(color[3]) / 255.0F;
         mask.set("color", glm::vec4(static_cast<float>(color[0]) / 255.0F * alpha,
                                     static_cast<float>(color[1]) / 255.0F * alpha,
