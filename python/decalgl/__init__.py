@@ -12,6 +12,7 @@ scene.render(scene.home(), size=(1920, 1080)).save("map.png")
 from ._core import __version__
 from .camera import Camera
 from .coloring import Coloring
+from .distance_field import DistanceField
 from .doctor import Diagnosis, doctor
 from .errors import (
     CancelledError,
@@ -31,8 +32,10 @@ from .frame import Frame, Picked, PreparedLayer, Stats
 from .indexes import BvhIndex
 from .layer import Layer
 from .lens import Lens
+from .networks import Lod, NetworkCategory, NetworkStyle
 from .patterns import Pattern
 from .renderer import Renderer
+from .road_styles import road_styles
 from .scene import Relief, Scene
 from .scene_file import load_scene
 from .strokes import Hatch
@@ -51,6 +54,7 @@ __all__ = [
     "DecalError",
     "DecalWarning",
     "Diagnosis",
+    "DistanceField",
     "FeatureTable",
     "FileError",
     "Frame",
@@ -59,7 +63,10 @@ __all__ = [
     "InputError",
     "Layer",
     "Lens",
+    "Lod",
     "MemoryLimitError",
+    "NetworkCategory",
+    "NetworkStyle",
     "Outline",
     "Pattern",
     "Picked",
@@ -76,4 +83,5 @@ __all__ = [
     "__version__",
     "doctor",
     "load_scene",
+    "road_styles",
 ]

@@ -4,6 +4,7 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/technique/technique.h"
+#include "technique/distance_field/distance_field.h"
 #include "technique/static_bvh/static_bvh.h"
 #include "technique/static_decals/static_decals.h"
 
@@ -14,6 +15,7 @@ using MakeTechnique = std::function<std::unique_ptr<Technique>()>;
 
 const std::map<std::string, MakeTechnique>& registry() {
     static const std::map<std::string, MakeTechnique> techniques = {
+        {"distance_field", [] { return std::make_unique<DistanceField>(); }},
         {"static", [] { return std::make_unique<StaticDecals>(); }},
         {"static_bvh", [] { return std::make_unique<StaticBvh>(); }},
     };
