@@ -27,6 +27,7 @@ uniform sampler2DArray drop_offs;
 #ifdef IDS
 layout(location = 0) out uint id;
 uniform float order_count;
+uniform int main_order;  // what main colours lie higher by, than borders
 #ifdef LENS
 uniform sampler2D lens_texture;  // the share of a pixel that is inside, and whether its centre is
 uniform int lens_side;           // 1: inside
@@ -112,7 +113,7 @@ void main() {
     float alpha = is_main ? max(style.main_color.a, style.texture_share) : style.border_color.a;
     if (distance > width * mark || alpha <= 0.0) discard;
     id = uint(kinds.w);
-    gl_FragDepth = float(kinds.w) / order_count;
+    gl_FragDepth = float(kinds.w + (is_main ? main_order : 0)) / order_count;
 #else
 #ifdef ANGLES
     vec2 shift = shape == 0 ? vec2(-direction.y, direction.x) : before ? from : from - along_way;

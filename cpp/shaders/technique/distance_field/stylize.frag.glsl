@@ -138,13 +138,11 @@ float cover(float distance, float half_width, float pixel, vec2 normal) {
 #endif
 }
 
-Layer layer_at(int category, Source source, Seen seen, Surface surface) {
+Layer layer_at(int category, Source source, float lod, Surface surface) {
     vec4 field = texelFetch(cross_fields, ivec3(source.texel, category), 0);
     Category own = category_at(category);
 #ifdef DEPTHS
-    float lod = lod_source == lod_by_distance ? texelFetch(depth_fields, ivec3(source.texel, category), 0).r : lod_at(seen);
-#else
-    float lod = lod_at(seen);
+    if (lod_source == lod_by_distance) lod = texelFetch(depth_fields, ivec3(source.texel, category), 0).r;
 #endif
     Style style = style_at(own, lod);
     float slope = category_texel(category, 3).z;
@@ -205,13 +203,13 @@ void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     Position position = unpack_position(texelFetch(position_texture, texel, 0));
     Surface surface = surface_at(texel);
-    Seen seen = seen_from(position, surface);
+    float lod = lod_at(seen_from(position, surface));
     Source source = source_of(position, surface);
     vec4 mains = vec4(0.0), borders = vec4(0.0);
     float covered = 0.0, weights = 0.0;
     int category = 0;
     do {
-        Layer layer = layer_at(category, source, seen, surface);
+        Layer layer = layer_at(category, source, lod, surface);
 #ifdef SMOOTH
         float weight = layer.main * layer.nearness * layer.nearness + 1e-6 * layer.main;
         mains += weight * premultiplied(layer.main_color, 1.0);

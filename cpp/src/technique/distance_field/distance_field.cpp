@@ -17,7 +17,7 @@ using namespace network;
 
 // Around boxes, in pixels: what coverage looks at beyond a field, and what rasterisers round.
 constexpr double spare_pixels = 2.0;
-constexpr uint32_t most_ordered = 1U << 24U;  // features whose order a float32 depth tells apart
+constexpr uint32_t most_ordered = 1U << 23U;  // features whose order a float32 depth tells apart, twice
 
 // Unit 7 is that of gathered pixels.
 enum Unit : int {
@@ -73,11 +73,6 @@ glm::vec4 lod_extent(const LevelOfDetail& lod, const View& view) {
             view.positions.origin_y + block.base_block.y * view.positions.block_size + block.base_offset.y;
     }
     return {low.x, low.y, 1.0 / size.x, 1.0 / size.y};
-}
-
-// The features of a layer by their place in the draw order, for ids.
-uint32_t most_order(const CategoryTable& table) {
-    return static_cast<uint32_t>(table.slots.size());
 }
 
 }  // namespace
@@ -233,7 +228,11 @@ void DistanceField::draw_boxes(const Side& side, const gl::Flags& flags, const V
     program.set("spare_pixels", static_cast<float>(spare_pixels + view.terrain_error));
     program.set("height_steps", glm::vec2(ranges.lowest(), ranges.step()));
     if (flags.count("IDS") != 0) {
-        program.set("order_count", static_cast<float>(most_order(side.prepared->table) + 1));
+        // Main colours lie over all borders, but where categories lie over each other with their borders.
+        const auto features = static_cast<int>(side.prepared->table.slots.size());
+        const bool is_over = side.prepared->options->borders == Borders::over;
+        program.set("order_count", static_cast<float>(2 * features + 1));
+        program.set("main_order", is_over ? 0 : features);
         if (flags.count("LENS") != 0)
             program.set("lens_side", static_cast<int>(lens_side));
     }

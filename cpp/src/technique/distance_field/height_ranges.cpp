@@ -20,7 +20,7 @@ HeightRange joined(HeightRange a, HeightRange b) {
 
 }  // namespace
 
-HeightRanges::HeightRanges(const Heightfield& terrain, unsigned threads) : terrain_(&terrain) {
+HeightRanges::HeightRanges(const Heightfield& terrain, unsigned threads) : terrain_(terrain) {
     int32_t rows = terrain.rows(), columns = terrain.columns();
     while (rows > 1 || columns > 1) {
         Level next{(rows + 1) / 2, (columns + 1) / 2, {}};
@@ -49,7 +49,7 @@ HeightRanges::HeightRanges(const Heightfield& terrain, unsigned threads) : terra
 // Level 0 are the samples themselves.
 HeightRange HeightRanges::at(size_t level, int32_t row, int32_t column) const {
     if (level == 0) {
-        const float height = terrain_->height(row, column);
+        const float height = terrain_.height(row, column);
         return std::isnan(height) ? no_ground : HeightRange{height, height};
     }
     const Level& own = levels_[level - 1];
@@ -61,7 +61,7 @@ HeightRange HeightRanges::over(const Bounds& rectangle) const {
     const auto index = [](double place, int32_t count) {
         return static_cast<int32_t>(std::clamp(place, 0.0, static_cast<double>(count - 1)));
     };
-    const Heightfield& t = *terrain_;
+    const Heightfield& t = terrain_;
     int32_t left = index(std::floor((rectangle.min_x - t.x0()) / t.dx()), t.columns());
     int32_t right = index(std::ceil((rectangle.max_x - t.x0()) / t.dx()), t.columns());
     int32_t top = index(std::floor((t.y0() - rectangle.max_y) / t.dy()), t.rows());

@@ -20,8 +20,8 @@ public:
 
     // Over the samples whose triangles reach into the rectangle.
     HeightRange over(const Bounds& rectangle) const;
-    float lowest() const { return terrain_->lowest(); }
-    float highest() const { return terrain_->highest(); }
+    float lowest() const { return terrain_.lowest(); }
+    float highest() const { return terrain_.highest(); }
     // Height that 16 bits count in steps of.
     double step() const;
     // lowest | highest << 16, in steps rounded outwards.
@@ -34,7 +34,7 @@ private:
     };
     HeightRange at(size_t level, int32_t row, int32_t column) const;
 
-    const Heightfield* terrain_;
+    Heightfield terrain_;  // shares its samples
     std::vector<Level> levels_;  // level k: of 2^(k+1) samples a side
 };
 
