@@ -116,7 +116,12 @@ void register_styles(py::module_& module) {
         .def_readwrite("layer", &LayerLook::layer)
         .def_readwrite("fill", &LayerLook::fill)
         .def_readwrite("stroke", &LayerLook::stroke)
-        .def_readwrite("casing", &LayerLook::casing);
+        .def_readwrite("casing", &LayerLook::casing)
+        .def_property(
+            "technique_options", [](const LayerLook& self) { return self.options; },
+            [](LayerLook& self, std::shared_ptr<TechniqueOptions> options) {
+                self.options = std::move(options);
+            });
     def_array(look, "draw_order", &LayerLook::draw_order);
 }
 

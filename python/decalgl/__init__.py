@@ -12,6 +12,7 @@ scene.render(scene.home(), size=(1920, 1080)).save("map.png")
 from ._core import __version__
 from .camera import Camera
 from .coloring import Coloring
+from .distance_field import DistanceField
 from .doctor import Diagnosis, doctor
 from .dynamic import Dynamic
 from .errors import (
@@ -33,8 +34,10 @@ from .indexes import BvhIndex
 from .layer import Layer
 from .lens import Lens
 from .loops import Detail, Loops, LoopsBvh
+from .networks import Lod, NetworkCategory, NetworkStyle
 from .patterns import Pattern
 from .renderer import Renderer
+from .road_styles import road_styles
 from .scene import Relief, Scene
 from .scene_file import load_scene
 from .strokes import Hatch
@@ -55,6 +58,7 @@ __all__ = [
     "DecalWarning",
     "Detail",
     "Diagnosis",
+    "DistanceField",
     "Dynamic",
     "FeatureTable",
     "FileError",
@@ -64,9 +68,12 @@ __all__ = [
     "InputError",
     "Layer",
     "Lens",
+    "Lod",
     "Loops",
     "LoopsBvh",
     "MemoryLimitError",
+    "NetworkCategory",
+    "NetworkStyle",
     "Outline",
     "Pattern",
     "Picked",
@@ -84,4 +91,5 @@ __all__ = [
     "__version__",
     "doctor",
     "load_scene",
+    "road_styles",
 ]

@@ -18,6 +18,7 @@ from ._filters import Columns, rows_meant
 from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, close_matches
 from .scene import Layer, draw_order_by
+from .techniques import Technique
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,11 +29,11 @@ if TYPE_CHECKING:
 
 COLOR_KEYWORDS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
 DECAL_KEYWORDS = (*COLOR_KEYWORDS, "width")
-KEYWORDS = (*DECAL_KEYWORDS, "order", "visible", "opacity", "by", "where", "outline", "casing")
+KEYWORDS = (*DECAL_KEYWORDS, "order", "visible", "opacity", "by", "where", "outline", "casing", "technique")
 # Of layers and their outlines and casings; lists of what lies where are made for them.
 PREPARED = (
     "corner", "miter_limit", "cap", "dash", "bands", "hatch", "slope_correction", "widest", "width_units",
-    "mode", "technique",
+    "mode",
 )  # fmt: skip
 
 
@@ -56,6 +57,7 @@ class LayerState:
 
     decals: by "fill", "stroke" and "casing", as far as there are any.
     shown: bool (features). opacity: float64 (features). Both None for all of it.
+    technique: with other choices than it was prepared with; None for those.
     removed: features that edits removed. geometry: of those that edits moved, replaced or added.
     """
 
@@ -68,6 +70,7 @@ class LayerState:
     shown: NDArray[np.bool_] | None = None
     opacity: NDArray[np.float64] | None = None
     draw_order: NDArray[np.int64] | None = None
+    technique: Technique | None = None
     removed: frozenset[int] = frozenset()
     geometry: Mapping[int, FeatureTable] = field(default_factory=dict)
 
@@ -103,6 +106,8 @@ class LayerState:
             setattr(look, role, core)
         if self.draw_order is not None and (before is None or before.draw_order is not self.draw_order):
             look.draw_order = self.draw_order
+        if self.technique is not None and (before is None or before.technique is not self.technique):
+            look.technique_options = self.technique.core_options()
         return look
 
     def seen_shares(self) -> NDArray[np.float64]:
@@ -185,9 +190,24 @@ def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
         opacity = _opacity(state, given["opacity"], given.get("by"))
         opacity = _merged(state.opacity, opacity, 1.0, where)
         result = replace(result, opacity=None if (opacity == 1.0).all() else opacity)
+    if "technique" in given:
+        result = replace(result, technique=_technique(state, given["technique"]))
     if "order" in given:
         result = replace(result, draw_order=_draw_order(state, given["order"]))
     return result
+
+
+def _technique(state: LayerState, technique: Any) -> Technique:
+    """The layer's own technique with other choices."""
+    own = state.layer.technique if isinstance(state.layer, Layer) else None
+    if not isinstance(technique, Technique) or own is None or type(own) is not type(technique):
+        raise StyleError(
+            f"technique= of a restyle must be the layer's own with other choices, but it is {technique!r}. Prepare the"
+            " scene anew to draw the layer otherwise."
+        )
+    if not technique.restyles:
+        raise StyleError(f"technique {technique.name!r} has no choices that a restyle could change.")
+    return technique.bound_to(state.layer.name, state.rows, state.attributes)
 
 
 def require_known(given: Mapping[str, Any], known: tuple[str, ...], name: str) -> None:

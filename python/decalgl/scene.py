@@ -240,6 +240,8 @@ class Scene:
         The other arguments, and the errors, are those of `add_polygons`; StyleError too for widths that are
         not positive, UnsupportedError for what this version does not draw.
         """
+        if isinstance(technique, Technique) and technique.names_widths:
+            width, width_units = 1.0, "m"
         colors = ColorKeywords(
             column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, legend_kwds, missing_kwds
         )
@@ -321,7 +323,7 @@ class Scene:
             len(self._layers),
             table,
             draw_order,
-            technique=chosen,
+            technique=chosen.bound_to(name, table.rows, attributes),
             **vars(resolved),
             attributes=attributes,
         )

@@ -5,6 +5,7 @@
 "dynamic"   lines of constant size on the screen: docs/techniques/dynamic.md
 "loops"     world-size, simplified where and as much as the view allows: docs/techniques/loops.md
 "volume"    meshes around the terrain, counted in the stencil: docs/techniques/volume.md
+"distance_field"   networks of lines, restyled as a whole: docs/techniques/distance_field.md
 """
 
 from __future__ import annotations
@@ -15,7 +16,11 @@ from typing import TYPE_CHECKING, ClassVar
 from .errors import StyleError, UnsupportedError, close_matches
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from . import _core
+    from ._sources import Attributes
 
 
 @dataclass(frozen=True)
@@ -23,15 +28,26 @@ class Technique:
     """A technique with what it lets its users choose; each is a class of its own.
 
     name: for `technique=`. needs_triangles: of polygons. follows_view: whether it draws widths on the screen.
+    restyles: whether its choices may change without preparing anew.
     """
 
     name: ClassVar[str]
     needs_triangles: ClassVar[bool] = False
     follows_view: ClassVar[bool] = False
+    restyles: ClassVar[bool] = False
 
     def core_options(self) -> _core.TechniqueOptions | None:
         """The choices as the core takes them; None where there are none."""
         return None
+
+    @property
+    def names_widths(self) -> bool:
+        """Whether the choices say how wide lines are, so that the layer's width is not read."""
+        return False
+
+    def bound_to(self, layer_name: str, rows: NDArray[np.int64], attributes: Attributes | None) -> Technique:
+        """With what the choices say of features looked up; `rows` are the features' rows. Raises StyleError."""
+        return self
 
 
 @dataclass(frozen=True)
@@ -57,7 +73,7 @@ def resolve_technique(technique: str | Technique, layer_name: str, follows_view:
             f"Layer {layer_name!r}: there is no technique={technique!r}.{close_matches(str(technique), names)} Use"
             f" {', '.join(map(repr, names))} or a decalgl.Technique."
         )
-    if follows_view and not technique.follows_view:
+    if follows_view and not technique.follows_view and not technique.names_widths:
         raise UnsupportedError(
             f"Layer {layer_name!r}: technique {technique.name!r} draws widths on the ground, but these are on the"
             " screen (width_units='px', the default, or limits). Give width_units='m', or technique='auto'."
