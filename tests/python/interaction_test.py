@@ -152,6 +152,13 @@ def test_widths_are_refused_beyond_what_was_prepared() -> None:
         fixed.restyle("ways", width=1.0)
 
 
+@pytest.mark.parametrize("keyword", ["dash", "bands", "corner", "cap", "hatch"])
+def test_what_lists_are_made_for_is_refused_with_what_to_do(keyword: str) -> None:
+    renderer = prepared(scene_of(PLAIN, {}))
+    with pytest.raises(dg.StyleError, match=rf"'ways': {keyword}= is what .* call preprocess\(scene\)"):
+        renderer.restyle("ways", **{keyword: "round"})
+
+
 def test_a_width_of_zero_hides_and_comes_back() -> None:
     renderer = prepared(scene_of(PLAIN, {"color": "navy"}, widest=4.0))
     before = renderer.render()
