@@ -4,7 +4,7 @@
 // and hide behind it without a depth of their own.
 //
 // COVERAGE      32 samples of the pixel at once, as the bits of a word
-// UNION         all that is shown looks the same and is opaque
+// UNION         all that is shown looks the same and is opaque; not with IDS
 // TRANSLUCENT   some colour is
 // JOINED        corners and caps that are not round
 // LIMITS        widths that depend on the depth
@@ -16,16 +16,12 @@
 #include "technique/dynamic_lines/line_looks.glsl"
 #include "technique/dynamic_lines/line_masks.glsl"
 #include "technique/dynamic_lines/screen_plane.glsl"
+#include "technique/dynamic_lines/tile_range.glsl"
 
 uniform usamplerBuffer tile_list;
 uniform samplerBuffer segment_ends;
 uniform usamplerBuffer segment_joints;
 uniform sampler2D surface_texture;
-#ifdef GATHERED
-#include "technique/dynamic_lines/tile_range.glsl"
-#else
-flat in ivec2 tile_range;
-#endif
 #ifdef LENS
 uniform sampler2D lens_texture;
 #endif
@@ -40,11 +36,12 @@ const uint no_slot = 0xFFFFFFFFu;
 
 ivec2 list_range() {
 #ifdef GATHERED
-    ivec2 tile = (gathered_pixel() + picture.xy) / TILE_SIDE;
-    return range_of_tile(tile.y * tile_grid.x + tile.x);
+    ivec2 pixel = gathered_pixel();
 #else
-    return tile_range;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
 #endif
+    ivec2 tile = (pixel + picture.xy) / TILE_SIDE;
+    return range_of_tile(tile.y * tile_grid.x + tile.x);
 }
 
 // The distance of the pixel's centre.
@@ -110,33 +107,40 @@ uint corner_mask(vec2 at, vec2 incoming, vec2 outgoing, float half_width, uint k
     return mask;
 }
 
+// Of round ends: at a bend the disc of the segment that ends there is enough.
+uint ends_mask(Stroke stroke, bool at_from, bool at_to) {
+    uint mask = 0u;
+    bool more = true;
+    do {
+        // Both ends are round only where a line has one segment.
+        bool here = at_from && more;
+        vec2 centre = here ? stroke.from : stroke.to, outwards = here ? -stroke.direction : stroke.direction;
+        uint disc = disc_mask(centre, stroke.half_width) & beyond_line(centre, outwards);
+        mask |= at_from || at_to ? disc : 0u;
+        more = here && at_to;
+        at_from = at_from && here && !more;
+    } while (more);
+    return mask;
+}
+
 uint segment_mask(ScreenPlane plane, vec4 ends, ScreenSegment segment, Joints joints, LineLook look, float half_width) {
     Stroke stroke = Stroke(segment.from, segment.to, direction_of_segment(segment), half_width);
     bool begins = (joints.flags & SEGMENT_BEGINS) != 0u, finishes = (joints.flags & SEGMENT_ENDS) != 0u;
-    bool round_from = (joints.flags & ROUND_FROM) != 0u, round_to = (joints.flags & ROUND_TO) != 0u;
+    bool turns = (joints.flags & SEGMENT_TURNS) != 0u;
     const float overlap = 0.01;  // so that rounding opens no gap
-    vec2 longer = vec2(begins ? 0.0 : overlap, finishes ? 0.0 : overlap);
 #ifdef JOINED
-    bool joined = corner_of(look.kind) != round_corner;
+    bool joined = corner_of(look.kind) != round_corner, capped = cap_of(look.kind) == round_cap;
     float cap = cap_of(look.kind) == square_cap ? half_width : 0.0;
-    longer = vec2(begins ? cap : overlap, finishes ? cap : overlap);
-    round_from = begins ? cap_of(look.kind) == round_cap : round_from && !joined;
-    round_to = finishes ? cap_of(look.kind) == round_cap : round_to && !joined;
-#else
-    round_from = round_from || begins;
-    round_to = round_to || finishes;
-#endif
-    uint mask = bar_mask(stroke, longer);
+    vec2 longer = vec2(begins ? cap : overlap, finishes ? cap : overlap);
+    uint mask = bar_mask(stroke, longer) | ends_mask(stroke, begins && capped, finishes ? capped : turns && !joined);
     float near = half_width + half_diagonal;
-    if (round_from && dot(segment.from, segment.from) < near * near)
-        mask |= disc_mask(segment.from, half_width) & beyond_line(segment.from, -stroke.direction);
-    if (round_to && dot(segment.to, segment.to) < near * near)
-        mask |= disc_mask(segment.to, half_width) & beyond_line(segment.to, stroke.direction);
-#ifdef JOINED
     if (joined && !finishes && dot(segment.to, segment.to) < 16.0 * near * near)
         mask |= corner_mask(segment.to, stroke.direction, next_direction(plane, ends, joints), half_width, look.kind);
-#endif
     return mask;
+#else
+    vec2 longer = vec2(begins ? 0.0 : overlap, finishes ? 0.0 : overlap);
+    return bar_mask(stroke, longer) | ends_mask(stroke, begins, finishes || turns);
+#endif
 }
 
 struct Samples {
@@ -262,17 +266,25 @@ vec4 composed(ScreenPlane plane, ivec2 range, out uint topmost) {
     float half_width = 0.0;
     int at = range.y - 1;
     bool ended = at < range.x;
+#ifdef UNION
+    look = look_of(0u);
+    half_width = half_width_in_pixels(look, 0u, plane.pixels_per_metre);
+#endif
     do {
         int index = int(texelFetch(tile_list, max(at, 0)).r);
         vec4 ends = texelFetch(segment_ends, index);
-        Joints joints = joints_at(index);
         ScreenSegment segment = on_screen(plane, ends);
+#if !defined(UNION) || defined(JOINED)
+        Joints joints = joints_at(index);
+#endif
+#ifndef UNION
         if (joints.slot != slot) {
             slot = joints.slot;
             look = look_of(slot);
             half_width = half_width_in_pixels(look, slot, plane.pixels_per_metre);
             covered = false;
         }
+#endif
         bool open = !ended && segment.seen && !covered && look.color.a > 0.0 && half_width > 0.0;
 #ifdef JOINED
         bool hit = open && distance_to(segment) <= 4.0 * half_width &&
