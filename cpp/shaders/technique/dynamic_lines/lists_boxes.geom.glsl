@@ -136,9 +136,9 @@ void main() {
     BoxEnd first = box_end(before, a, b, along, reach, begins), last = box_end(a, b, after, along, reach, ends);
     vec2 heights = ground_heights + vec2(-reach.across, reach.across);
     uvec2 line = uvec2(slot, (begins ? 1u : 0u) | (ends ? 2u : 0u));
-    // Fourteen corners make a strip of all six sides (Evans et al. 1996): bits of left, to and high.
+    // Fourteen corners make a strip of all six sides (Evans et al. 1996): bits of right, end and high.
     for (int i = 0; i < 14; ++i) {
-        bool left = (0x287a >> i & 1) != 0, at_end = (0x02af >> i & 1) != 0, high = (0x31e3 >> i & 1) != 0;
+        bool left = (0x287a >> i & 1) == 0, at_end = (0x02af >> i & 1) != 0, high = (0x31e3 >> i & 1) != 0;
         BoxEnd end = first;
         if (at_end) end = last;
         vec2 place = (at_end ? b + end.beyond * along : a - end.beyond * along) + (left ? end.side : -end.side);

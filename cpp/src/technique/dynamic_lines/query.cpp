@@ -9,7 +9,6 @@ namespace decalgl {
 namespace {
 
 constexpr double nearest_share = 1e-3;  // of the point's depth: what lies nearer to the eye is cut off
-constexpr double farthest_reach = 8.0;  // half widths, as metres seen head-on, that a line may be away on the map
 
 double half_width_of(const LineStyle& style, double pixels_per_metre) {
     const double own = static_cast<double>(style.half_width) * ((style.kind & IN_METRES) != 0 ? pixels_per_metre : 1.0);
@@ -29,13 +28,6 @@ Vector2 unit(Vector2 way) {
 
 Vector2 between(Vector2 a, Vector2 b, double share) {
     return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
-}
-
-double distance_to(Vector2 a, Vector2 b) {
-    const Vector2 way{b.x - a.x, b.y - a.y};
-    const double square = dot(way, way);
-    const double share = square > 0.0 ? std::clamp(-dot(a, way) / square, 0.0, 1.0) : 0.0;
-    return length(between(a, b, share));
 }
 
 struct ScreenSegment {
@@ -83,8 +75,6 @@ private:
 
     bool covers(const LineRecord& line, uint32_t segment, const LineStyle& style, double half_width) const {
         const Vector2 a = offset(line, segment), b = offset(line, segment + 1);
-        if (distance_to(a, b) * point_.pixels_per_metre > farthest_reach * half_width)
-            return false;
         const ScreenSegment seen = on_screen(point_, a, b);
         if (!seen.seen)
             return false;
