@@ -94,8 +94,8 @@ LayerEdit make_edit(uint32_t layer, bool polygons, const Array<uint32_t>& remove
     return edit;
 }
 
-std::shared_ptr<DynamicOptions> make_dynamic_options(const std::string& method,
-                                                     const std::string& width_rule, double cell) {
+std::shared_ptr<DynamicOptions> make_dynamic_options(const std::string& method, const std::string& width_rule,
+                                                     double cell) {
     auto options = std::make_shared<DynamicOptions>();
     if (method != "auto")
         options->method = method == "lists" ? LineMethod::lists : LineMethod::bins;

@@ -42,7 +42,9 @@ def test_the_thesis_widens_lines_with_the_distance_from_the_eye(
     camera: dg.Camera, size: tuple[int, int]
 ) -> None:
     width = 7.0
-    frame = listed(flat_scene(), width=width, width_rule="thesis").render(camera, size, "none", terrain_error=0.0)
+    frame = listed(flat_scene(), width=width, width_rule="thesis").render(
+        camera, size, "none", terrain_error=0.0
+    )
     world = frame.world
     seen = np.isfinite(world[..., 0])
     if camera.fov is None or camera.view_height:
@@ -52,9 +54,13 @@ def test_the_thesis_widens_lines_with_the_distance_from_the_eye(
         # Equation 4.2, with half of the picture's shorter side for one.
         least = np.tan(np.radians(camera.fov) / 2) * min(1.0, size[0] / size[1])
         metres = distance * least / (min(size) / 2)
-    apart = shapely.distance(
-        shapely.points(np.nan_to_num(world[..., 0]), np.nan_to_num(world[..., 1]))[..., None], np.array(LINES)
-    ) / metres[..., None]
+    apart = (
+        shapely.distance(
+            shapely.points(np.nan_to_num(world[..., 0]), np.nan_to_num(world[..., 1]))[..., None],
+            np.array(LINES),
+        )
+        / metres[..., None]
+    )
     certain = (np.abs(apart - width / 2) > 0.01).all(axis=2) & seen
     covered = apart <= width / 2
     topmost = np.where(covered.any(axis=2), 2 - np.argmax(covered[..., ::-1], axis=2), -1)

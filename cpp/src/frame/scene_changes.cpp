@@ -33,8 +33,8 @@ std::vector<LayerLook> looks_of(const PreparedScene& scene, const PreparedPass& 
         own.push_back(look);
         if (!is_split(scene, look.layer))
             continue;
-        const bool has_fills = pass.first_layer + pass.layer_count == look.layer + 1 &&
-                               pass.technique != "dynamic";
+        const bool has_fills =
+            pass.first_layer + pass.layer_count == look.layer + 1 && pass.technique != "dynamic";
         if (has_fills)
             own.back().stroke = DecalLook();
         else
@@ -105,9 +105,9 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
     const PreparedLayer& layer = scene.layers[edit.layer];
     validate(edit, layer.kind, layer.rows.size(), layer.name);
     if (is_split(scene, edit.layer))
-        throw Error(ErrorKind::unsupported,
-                    "layer '" + layer.name +
-                        "': polygons whose outlines have widths on the screen cannot be edited; prepare the scene anew");
+        throw Error(ErrorKind::unsupported, "layer '" + layer.name +
+                                                "': polygons whose outlines have widths on the screen cannot "
+                                                "be edited; prepare the scene anew");
     auto changed = std::make_shared<PreparedScene>(scene);
     const auto pass = std::find_if(changed->passes.begin(), changed->passes.end(),
                                    [&](const PreparedPass& each) { return each.has_layer(edit.layer); });

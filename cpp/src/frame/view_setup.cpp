@@ -227,7 +227,8 @@ ViewBlock make_view_block(const Camera& camera, int width, int height, const Hei
 SeenPoint seen_point(const Camera& camera, int height, glm::dvec3 place, glm::dvec2 gradient) {
     const CameraBasis basis = basis_of(camera);
     const glm::dvec3 from_eye = place - camera.eye;
-    const double half = camera.orthographic() ? 0.5 * camera.view_height : half_height_at_unit_distance(camera);
+    const double half =
+        camera.orthographic() ? 0.5 * camera.view_height : half_height_at_unit_distance(camera);
     const double depth = camera.orthographic() ? 1.0 : glm::dot(from_eye, basis.forward);
     const double pixels = height / (2.0 * half * depth);
     const glm::dvec3 lean = camera.orthographic() ? glm::dvec3(0.0) : basis.forward / depth;

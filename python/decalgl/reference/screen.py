@@ -49,7 +49,9 @@ class ScreenPlanes:
             determinant = np.linalg.det(self.to_screen)
             across = np.stack([self.to_screen[:, 1, 1], self.to_screen[:, 0, 1]], axis=-1)
             along = np.stack([self.to_screen[:, 1, 0], self.to_screen[:, 0, 0]], axis=-1)
-            ellipse = np.stack([np.hypot(*across.T), np.hypot(*along.T)], axis=1) / np.abs(determinant)[:, None]
+            ellipse = (
+                np.stack([np.hypot(*across.T), np.hypot(*along.T)], axis=1) / np.abs(determinant)[:, None]
+            )
             reach = pixels[:, None] * ellipse
             # With the depth, 1 + k.a, an ellipse grows away from the eye: |a| <= reach * (1 + |k| |a|).
             left = 1.0 - (np.abs(self.lean) * reach).sum(axis=1)
@@ -131,19 +133,20 @@ def _pairs(
     """Pieces and points whose boxes touch."""
     count = len(points.x)
     first = np.arange(0, count, GROUP)
-    boxes = [
-        reduce.reduceat(values, first)
-        for reduce, values in (
-            (np.minimum, points.x - reach[:, 0]),
-            (np.minimum, points.y - reach[:, 1]),
-            (np.maximum, points.x + reach[:, 0]),
-            (np.maximum, points.y + reach[:, 1]),
-        )
-    ]
     far = 1e12  # infinite boxes have no place in a tree
+
+    def side(reduce: np.ufunc, values: FloatArray) -> FloatArray:
+        return np.clip(reduce.reduceat(values, first), -far, far)
+
+    groups = shapely.box(
+        side(np.minimum, points.x - reach[:, 0]),
+        side(np.minimum, points.y - reach[:, 1]),
+        side(np.maximum, points.x + reach[:, 0]),
+        side(np.maximum, points.y + reach[:, 1]),
+    )
     low, high = np.minimum(start, end), np.maximum(start, end)
     tree = shapely.STRtree(shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1]))
-    group, piece = tree.query(shapely.box(*(np.clip(side, -far, far) for side in boxes)))
+    group, piece = tree.query(groups)
     order = np.lexsort((piece, group))
     group, piece = group[order], piece[order]
     ends = np.minimum(first + GROUP, count)
@@ -176,9 +179,7 @@ def _measure(
         place, depth = planes.project(pieces.place - xy)
         nowhere = depth < NEAREST
         depth = np.maximum(depth, NEAREST)
-        coming, going = (
-            _direction(way, place, depth, planes) for way in (pieces.coming, pieces.going)
-        )
+        coming, going = (_direction(way, place, depth, planes) for way in (pieces.coming, pieces.going))
         on_screen = Joints(
             place / depth[:, None], coming, going, pieces.arc, pieces.shape, widths, pieces.feature
         )
@@ -188,9 +189,7 @@ def _measure(
     return clearance, gauge
 
 
-def _segment(
-    a: FloatArray, b: FloatArray, planes: ScreenPlanes
-) -> tuple[FloatArray, FloatArray, BoolArray]:
+def _segment(a: FloatArray, b: FloatArray, planes: ScreenPlanes) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Both ends on the screen, (n, 2), cut off where they come too near to the eye; which are so all along."""
     start, depth_a = planes.project(a)
     end, depth_b = planes.project(b)

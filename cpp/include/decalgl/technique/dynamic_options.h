@@ -16,7 +16,8 @@ enum class LineWidthRule : uint32_t { screen, thesis };
 struct DynamicOptions : TechniqueOptions {
     LineMethod method = LineMethod::automatic;
     LineWidthRule width_rule = LineWidthRule::screen;
-    double cell = 0.125;  // pixels: of vertices that fall together in one, a line keeps the first; 0: all are kept
+    double cell =
+        0.125;  // pixels: of vertices that fall together in one, a line keeps the first; 0: all are kept
 
     bool equals(const TechniqueOptions& other) const override {
         const auto* same = dynamic_cast<const DynamicOptions*>(&other);

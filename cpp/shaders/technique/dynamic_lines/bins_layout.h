@@ -13,8 +13,8 @@
 // What is left of a segment in a view.
 //     ends    on the map, relative to the base: from x, y; to x, y
 //     joints  next x, y as bits; slot; flags
-#define SEGMENT_BEGINS 1u   // of an open line
+#define SEGMENT_BEGINS 1u  // of an open line
 #define SEGMENT_ENDS 2u
-#define SEGMENT_TURNS 4u    // at its end so much that the gap to the next one shows
+#define SEGMENT_TURNS 4u  // at its end so much that the gap to the next one shows
 
 #endif

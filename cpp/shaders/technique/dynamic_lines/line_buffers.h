@@ -55,7 +55,8 @@ struct LineRecord {
 #define LineSegment uvec4
 
 #ifdef __cplusplus
-static_assert(sizeof(SourceVertex) == 16 && sizeof(MatchedVertex) == 16 && sizeof(LineRecord) == 16, "std430");
+static_assert(sizeof(SourceVertex) == 16 && sizeof(MatchedVertex) == 16 && sizeof(LineRecord) == 16,
+              "std430");
 }  // namespace decalgl
 #endif
 

@@ -14,11 +14,11 @@ using uint = uint32_t;
 #define LINE_STYLE_TEXELS 2
 
 // `kind`
-#define CORNER_MASK 3u     // as decalgl/vector/stroke.h counts them
-#define CAP_SHIFT 2u       // two bits
-#define IN_METRES 16u      // else in pixels
-#define HAS_LIMITS 32u     // else those are not looked at
-#define MITER_SHIFT 16u    // the miter limit in 1/256 degree
+#define CORNER_MASK 3u   // as decalgl/vector/stroke.h counts them
+#define CAP_SHIFT 2u     // two bits
+#define IN_METRES 16u    // else in pixels
+#define HAS_LIMITS 32u   // else those are not looked at
+#define MITER_SHIFT 16u  // the miter limit in 1/256 degree
 
 struct LineStyle {
     uint color;  // R, G, B, A bytes, straight alpha; alpha 0 is not drawn

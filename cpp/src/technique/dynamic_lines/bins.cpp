@@ -29,7 +29,8 @@ uint32_t divided(uint32_t count, uint32_t by) {
 }
 
 gl::TextureBuffer make_texels(const MemoryAccount& memory, GLenum format, size_t texel_bytes, size_t count) {
-    return gl::TextureBuffer::create(memory, "dynamic: bins", format, texel_bytes * std::max<size_t>(count, 1));
+    return gl::TextureBuffer::create(memory, "dynamic: bins", format,
+                                     texel_bytes * std::max<size_t>(count, 1));
 }
 
 }  // namespace
@@ -129,8 +130,9 @@ void LineBins::sort(const SegmentList& segments, gl::ProgramLibrary& programs) {
                         "picture of fewer pixels");
     if (entry_count_ > list_.texels()) {
         list_ = gl::TextureBuffer();
-        list_ = make_texels(memory_, GL_R32UI, 4,
-                            std::min<size_t>(entry_count_ + entry_count_ / 2, static_cast<size_t>(limit / 4)));
+        list_ =
+            make_texels(memory_, GL_R32UI, 4,
+                        std::min<size_t>(entry_count_ + entry_count_ / 2, static_cast<size_t>(limit / 4)));
     }
     if (entry_count_ > 0)
         run_tiles(segments, {"FILL"}, programs);

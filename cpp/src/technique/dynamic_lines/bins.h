@@ -13,8 +13,8 @@ public:
     explicit LineBins(const MemoryAccount& memory);
 
     // Sorts what a view leaves of the lines. Throws Error(memory).
-    void update(const View& view, const MatchedLines& lines, const SegmentList& segments, const LineLooks& looks,
-                gl::ProgramLibrary& programs);
+    void update(const View& view, const MatchedLines& lines, const SegmentList& segments,
+                const LineLooks& looks, gl::ProgramLibrary& programs);
     void draw(const View& view, const GBufferView& gbuffer, const LineLooks& looks,
               gl::ProgramLibrary& programs) const;
     void draw_ids(const GBufferView& gbuffer, const LineLooks& looks, gl::ProgramLibrary& programs) const;

@@ -43,7 +43,8 @@ inline void dispatch(gl::Program& program, uint32_t count) {
 // The part of a buffer that a call of dispatch writes, of records of so many bytes; the program counts from its beginning.
 inline void bind_records(GLuint index, const gl::Buffer& buffer, size_t record_bytes, uint32_t first,
                          uint32_t count) {
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, index, buffer.id(), static_cast<GLintptr>(first * record_bytes),
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, index, buffer.id(),
+                      static_cast<GLintptr>(first * record_bytes),
                       static_cast<GLsizeiptr>(count * record_bytes));
 }
 

@@ -110,8 +110,8 @@ std::unique_ptr<PreparedLines> open_lines(const ArchiveReader& archive, const st
     lines->styles = archive.array<LineStyle>(prefix + "styles");
     lines->slots = archive.array<Decal>(prefix + "slots");
     int exponent = 0;
-    const bool is_lattice = std::isfinite(record.lattice.origin_x) && std::isfinite(record.lattice.origin_y) &&
-                            std::isfinite(record.lattice.quantum) &&
+    const bool is_lattice = std::isfinite(record.lattice.origin_x) &&
+                            std::isfinite(record.lattice.origin_y) && std::isfinite(record.lattice.quantum) &&
                             std::frexp(record.lattice.quantum, &exponent) == 0.5;
     const bool is_known = record.method <= LineMethod::lists && record.width_rule <= LineWidthRule::thesis &&
                           record.cell >= 0.0 && std::isfinite(record.cell);

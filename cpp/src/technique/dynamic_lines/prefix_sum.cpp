@@ -26,8 +26,7 @@ void PrefixSum::run(const gl::Buffer& values, uint32_t count, gl::ProgramLibrary
         run(0, values, count, programs);
 }
 
-void PrefixSum::run(size_t level, const gl::Buffer& values, uint32_t count,
-                    gl::ProgramLibrary& programs) {
+void PrefixSum::run(size_t level, const gl::Buffer& values, uint32_t count, gl::ProgramLibrary& programs) {
     const uint32_t runs = runs_of(count);
     const auto add_up = [&](const gl::Flags& flags) {
         gl::Program& program = programs.get("dynamic_prefix_sum", flags);

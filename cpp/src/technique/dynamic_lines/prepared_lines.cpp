@@ -50,7 +50,8 @@ void require_drawable(const Layer& layer) {
     for (const Stroke* stroke : {&layer.stroke, &layer.casing}) {
         for (const StrokeStyle& style : stroke->styles) {
             if (style.slope_correction != SlopeCorrection::none)
-                refuse(layer, "knows no slope_correction, as its widths are those on the screen; leave it out");
+                refuse(layer,
+                       "knows no slope_correction, as its widths are those on the screen; leave it out");
             if (style.pattern.period > 0.0 || !style.bands.empty())
                 refuse(layer, "draws neither dashes nor bands; leave them out, or give width_units='m'");
         }
@@ -94,7 +95,8 @@ public:
 
     void add(const Features& features, size_t feature, uint32_t slot) {
         const bool rings = features.kind == FeatureKind::polygons;
-        for (auto part = features.feature_offsets[feature]; part < features.feature_offsets[feature + 1]; ++part)
+        for (auto part = features.feature_offsets[feature]; part < features.feature_offsets[feature + 1];
+             ++part)
             add_part(features.part(static_cast<size_t>(part)), rings, slot);
         const uint64_t bytes = vertices.size() * sizeof(SourceVertex) + lines.size() * sizeof(LineRecord);
         if (bytes > charge_.bytes() + step_bytes)
@@ -197,8 +199,7 @@ std::unique_ptr<PreparedLines> prepare_lines(const TechniqueInput& input, Progre
     auto prepared = std::make_unique<PreparedLines>();
     for (const Layer& layer : input.layers)
         require_drawable(layer);
-    if (const auto* options =
-            dynamic_cast<const DynamicOptions*>(input.layers[0].technique.options.get())) {
+    if (const auto* options = dynamic_cast<const DynamicOptions*>(input.layers[0].technique.options.get())) {
         prepared->method = options->method;
         prepared->width_rule = options->width_rule;
         prepared->cell = options->cell;

@@ -11,7 +11,8 @@ namespace {
 constexpr double nearest_share = 1e-3;  // of the point's depth: what lies nearer to the eye is cut off
 
 double half_width_of(const LineStyle& style, double pixels_per_metre) {
-    const double own = static_cast<double>(style.half_width) * ((style.kind & IN_METRES) != 0 ? pixels_per_metre : 1.0);
+    const double own =
+        static_cast<double>(style.half_width) * ((style.kind & IN_METRES) != 0 ? pixels_per_metre : 1.0);
     const auto limit = [&](float pixels, float metres, bool least) {
         const double in_pixels = static_cast<double>(pixels);
         const double on_ground = static_cast<double>(metres) * pixels_per_metre;
@@ -85,7 +86,8 @@ private:
         const Vector2 direction = unit({seen.to.x - seen.from.x, seen.to.y - seen.from.y});
         const double square = cap == Cap::square ? half_width : 0.0, overlap = 1e-3 * half_width;
         const Vector2 from_a{-seen.from.x, -seen.from.y}, from_b{-seen.to.x, -seen.to.y};
-        double reach = bar_reach(from_a, from_b, direction, {begins ? square : overlap, ends ? square : overlap});
+        double reach =
+            bar_reach(from_a, from_b, direction, {begins ? square : overlap, ends ? square : overlap});
         if (begins)
             reach = std::min(reach, cap_reach(cap, from_a));
         if (ends)
