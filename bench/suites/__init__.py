@@ -11,6 +11,7 @@ interior     interior: what does the inside of a large polygon cost?
 stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
+dynamic      D, update_share: what do lines of constant width on the screen cost, by tiles and by lists?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
@@ -20,6 +21,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import (
+    dynamic,
     files,
     indexes,
     interaction,
@@ -53,6 +55,7 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "stacks": stacks.measure,
     "ring": ring.measure,
     "interaction": interaction.measure,
+    "dynamic": dynamic.measure,
     "styles": styles.measure,
     "volume": volume.measure,
 }

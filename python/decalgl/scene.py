@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from ._sources import Attributes
     from .frame import Frame
     from .renderer import Renderer
-    from .styles import Casing, Outline, WidthUnits
+    from .strokes import WidthUnits
+    from .styles import Casing, Outline
 
 
 @dataclass(frozen=True)
@@ -174,8 +175,9 @@ class Scene:
         outline: an `Outline`.
         order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
             missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
-        technique: who draws the layer: "auto", "static", "dynamic" or a `Technique` (`decalgl.techniques`). Neighbouring layers of
-            one technique are one pass; between passes only colour and coverage are known.
+        technique: who draws the layer: "auto", "static", "dynamic" or a `Technique` (`decalgl.techniques`).
+            Neighbouring layers of one technique are one pass; between passes only colour and coverage are known.
+            Outlines with widths on the screen are a pass over that of the fills.
 
         Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """

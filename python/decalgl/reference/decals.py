@@ -30,8 +30,8 @@ class FillDecals:
 class StrokeDecals:
     """Strokes, casings or outlines of a layer.
 
-    drawn, place: as of fills. half_widths: (features,) in the stroke's units. side: "normal", or which side of the rings is
-    left of outlines, "inset" or "offset", whose half widths are whole widths.
+    drawn, place: as of fills. half_widths: (features,) in the stroke's units. side: "normal", or which side of the
+    rings is left of outlines, "inset" or "offset", whose half widths are whole widths.
     """
 
     stroke: StrokeLike

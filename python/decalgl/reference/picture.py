@@ -99,7 +99,10 @@ def render_ids(
 
 
 def slopes_of(scene: SceneLike, camera: CameraLike, size: Size, surface: Surface) -> Slopes | None:
-    """What slope correction and widths on the screen need at the positions of a surface, flattened; None where no style asks for it."""
+    """What slope correction and widths on the screen need at a surface's positions, flattened.
+
+    None where no style asks for it.
+    """
     if not follows_slopes(scene):
         return None
     gradient, world = surface.gradient.reshape(-1, 2), surface.world.reshape(-1, 3)

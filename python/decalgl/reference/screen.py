@@ -133,19 +133,20 @@ def _pairs(
     """Pieces and points whose boxes touch."""
     count = len(points.x)
     first = np.arange(0, count, GROUP)
-    boxes = [
-        reduce.reduceat(values, first)
-        for reduce, values in (
-            (np.minimum, points.x - reach[:, 0]),
-            (np.minimum, points.y - reach[:, 1]),
-            (np.maximum, points.x + reach[:, 0]),
-            (np.maximum, points.y + reach[:, 1]),
-        )
-    ]
     far = 1e12  # infinite boxes have no place in a tree
+
+    def side(reduce: np.ufunc, values: FloatArray) -> FloatArray:
+        return np.clip(reduce.reduceat(values, first), -far, far)
+
+    groups = shapely.box(
+        side(np.minimum, points.x - reach[:, 0]),
+        side(np.minimum, points.y - reach[:, 1]),
+        side(np.maximum, points.x + reach[:, 0]),
+        side(np.maximum, points.y + reach[:, 1]),
+    )
     low, high = np.minimum(start, end), np.maximum(start, end)
     tree = shapely.STRtree(shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1]))
-    group, piece = tree.query(shapely.box(*(np.clip(side, -far, far) for side in boxes)))
+    group, piece = tree.query(groups)
     order = np.lexsort((piece, group))
     group, piece = group[order], piece[order]
     ends = np.minimum(first + GROUP, count)

@@ -13,6 +13,7 @@
 // the context.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -84,6 +85,13 @@ struct SeenPoint {
     double gradient_x = 0.0;  // metres of height a metre on the map
     double gradient_y = 0.0;
     double forward_z = -1.0;  // of the camera's unit view direction
+    // An offset (x, y) on the map, dropped onto that plane, lies (x * east + y * north) / (1 + x * lean_x + y * lean_y)
+    // pixels from the place on the screen.
+    std::array<double, 2> east{};
+    std::array<double, 2> north{};
+    double lean_x = 0.0;
+    double lean_y = 0.0;
+    double pixels_per_metre = 1.0;  // seen head-on
 };
 
 class Prepared {

@@ -47,12 +47,10 @@ void main() {
     MatchedVertex from = vertex_at(segment.y), to = vertex_at(segment.z);
     bool begins = segment.x == NO_VERTEX, ends = segment.w == NO_VERTEX;
     vec2 a = map_place(from), b = map_place(to);
-    vec2 before = begins ? a : map_place(vertex_at(segment.x));
     vec2 after = ends ? b : map_place(vertex_at(segment.w));
     uint slot = line_at(from.line).slot;
     uint flags = (begins ? SEGMENT_BEGINS : 0u) | (ends ? SEGMENT_ENDS : 0u);
-    if (!begins && turns(a - before, b - a)) flags |= ROUND_FROM;
-    if (!ends && turns(b - a, after - b)) flags |= ROUND_TO;
+    if (!ends && turns(b - a, after - b)) flags |= SEGMENT_TURNS;
 
     ProjectedSegment seen = project(ground_place(from), ground_place(to));
     vec3 across = ray_origin_dx.xyz + max(seen.nearest, base_offset.w) * ray_direction_dx.xyz;

@@ -3,8 +3,8 @@
 // Each segment lies on the plane of the ground that this pixel sees (screen_plane.glsl), so lines bend over the terrain
 // and hide behind it without a depth of their own.
 //
-// COVERAGE      32 samples of the pixel at once, as the bits of a word
-// UNION         all that is shown looks the same and is opaque
+// COVERAGE      64 samples of the pixel at once (shared/sample_masks.glsl)
+// UNION         all that is shown looks the same and is opaque; not with IDS
 // TRANSLUCENT   some colour is
 // JOINED        corners and caps that are not round
 // LIMITS        widths that depend on the depth
@@ -16,16 +16,12 @@
 #include "technique/dynamic_lines/line_looks.glsl"
 #include "technique/dynamic_lines/line_masks.glsl"
 #include "technique/dynamic_lines/screen_plane.glsl"
+#include "technique/dynamic_lines/tile_range.glsl"
 
 uniform usamplerBuffer tile_list;
 uniform samplerBuffer segment_ends;
 uniform usamplerBuffer segment_joints;
 uniform sampler2D surface_texture;
-#ifdef GATHERED
-#include "technique/dynamic_lines/tile_range.glsl"
-#else
-flat in ivec2 tile_range;
-#endif
 #ifdef LENS
 uniform sampler2D lens_texture;
 #endif
@@ -40,11 +36,12 @@ const uint no_slot = 0xFFFFFFFFu;
 
 ivec2 list_range() {
 #ifdef GATHERED
-    ivec2 tile = (gathered_pixel() + picture.xy) / TILE_SIDE;
-    return range_of_tile(tile.y * tile_grid.x + tile.x);
+    ivec2 pixel = gathered_pixel();
 #else
-    return tile_range;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
 #endif
+    ivec2 tile = (pixel + picture.xy) / TILE_SIDE;
+    return range_of_tile(tile.y * tile_grid.x + tile.x);
 }
 
 // The distance of the pixel's centre.
@@ -91,11 +88,11 @@ vec2 next_direction(ScreenPlane plane, vec4 ends, Joints joints) {
 #ifdef COVERAGE
 
 // A corner that is not round, in the gap between two bars.
-uint corner_mask(vec2 at, vec2 incoming, vec2 outgoing, float half_width, uint kind) {
+uvec2 corner_mask(vec2 at, vec2 incoming, vec2 outgoing, float half_width, uint kind) {
     float turn = cross_product(incoming, outgoing), straight = dot(incoming, outgoing);
     bool sharp = corner_of(kind) == miter_corner && straight < -miter_cosine(kind) - 1e-6;
     float opening = 0.5 * length(incoming + outgoing);
-    uint mask = disc_mask(at, half_width);
+    uvec2 mask = disc_mask(at, half_width);
     if (!sharp && opening > 1e-6) {
         float side = turn > 0.0 ? 1.0 : -1.0;  // the gap lies to the other side of the turn
         vec2 out_a = side * vec2(incoming.y, -incoming.x), out_b = side * vec2(outgoing.y, -outgoing.x);
@@ -105,63 +102,70 @@ uint corner_mask(vec2 at, vec2 incoming, vec2 outgoing, float half_width, uint k
             vec2 outwards = normalize(out_a + out_b);
             mask &= beyond_line(at + half_width * opening * outwards, -outwards);
         }
-        if (abs(turn) < 1e-4) mask = 0u;
+        if (abs(turn) < 1e-4) mask = no_samples;
     }
     return mask;
 }
 
-uint segment_mask(ScreenPlane plane, vec4 ends, ScreenSegment segment, Joints joints, LineLook look, float half_width) {
-    Stroke stroke = Stroke(segment.from, segment.to, direction_of_segment(segment), half_width);
-    bool begins = (joints.flags & SEGMENT_BEGINS) != 0u, finishes = (joints.flags & SEGMENT_ENDS) != 0u;
-    bool round_from = (joints.flags & ROUND_FROM) != 0u, round_to = (joints.flags & ROUND_TO) != 0u;
-    const float overlap = 0.01;  // so that rounding opens no gap
-    vec2 longer = vec2(begins ? 0.0 : overlap, finishes ? 0.0 : overlap);
-#ifdef JOINED
-    bool joined = corner_of(look.kind) != round_corner;
-    float cap = cap_of(look.kind) == square_cap ? half_width : 0.0;
-    longer = vec2(begins ? cap : overlap, finishes ? cap : overlap);
-    round_from = begins ? cap_of(look.kind) == round_cap : round_from && !joined;
-    round_to = finishes ? cap_of(look.kind) == round_cap : round_to && !joined;
-#else
-    round_from = round_from || begins;
-    round_to = round_to || finishes;
-#endif
-    uint mask = bar_mask(stroke, longer);
-    float near = half_width + half_diagonal;
-    if (round_from && dot(segment.from, segment.from) < near * near)
-        mask |= disc_mask(segment.from, half_width) & beyond_line(segment.from, -stroke.direction);
-    if (round_to && dot(segment.to, segment.to) < near * near)
-        mask |= disc_mask(segment.to, half_width) & beyond_line(segment.to, stroke.direction);
-#ifdef JOINED
-    if (joined && !finishes && dot(segment.to, segment.to) < 16.0 * near * near)
-        mask |= corner_mask(segment.to, stroke.direction, next_direction(plane, ends, joints), half_width, look.kind);
-#endif
+// Of round ends: at a bend the disc of the segment that ends there is enough.
+uvec2 ends_mask(Stroke stroke, bool at_from, bool at_to) {
+    uvec2 mask = no_samples;
+    bool more = true;
+    do {
+        // Both ends are round only where a line has one segment.
+        bool here = at_from && more;
+        vec2 centre = here ? stroke.from : stroke.to, outwards = here ? -stroke.direction : stroke.direction;
+        uvec2 disc = disc_mask(centre, stroke.half_width) & beyond_line(centre, outwards);
+        mask |= at_from || at_to ? disc : no_samples;
+        more = here && at_to;
+        at_from = at_from && here && !more;
+    } while (more);
     return mask;
 }
 
+uvec2 segment_mask(ScreenPlane plane, vec4 ends, ScreenSegment segment, Joints joints, LineLook look, float half_width) {
+    Stroke stroke = Stroke(segment.from, segment.to, direction_of_segment(segment), half_width);
+    bool begins = (joints.flags & SEGMENT_BEGINS) != 0u, finishes = (joints.flags & SEGMENT_ENDS) != 0u;
+    bool turns = (joints.flags & SEGMENT_TURNS) != 0u;
+    const float overlap = 0.01;  // so that rounding opens no gap
+#ifdef JOINED
+    bool joined = corner_of(look.kind) != round_corner, capped = cap_of(look.kind) == round_cap;
+    float cap = cap_of(look.kind) == square_cap ? half_width : 0.0;
+    vec2 longer = vec2(begins ? cap : overlap, finishes ? cap : overlap);
+    uvec2 mask = bar_mask(stroke, longer) | ends_mask(stroke, begins && capped, finishes ? capped : turns && !joined);
+    float near = half_width + half_diagonal;
+    if (joined && !finishes && dot(segment.to, segment.to) < 16.0 * near * near)
+        mask |= corner_mask(segment.to, stroke.direction, next_direction(plane, ends, joints), half_width, look.kind);
+    return mask;
+#else
+    vec2 longer = vec2(begins ? 0.0 : overlap, finishes ? 0.0 : overlap);
+    return bar_mask(stroke, longer) | ends_mask(stroke, begins, finishes || turns);
+#endif
+}
+
 struct Samples {
-    uint open;
+    uvec2 open;
     vec4 sum;
 #ifdef TRANSLUCENT
     float clear[sample_count];  // how much of what lies behind shows through
 #endif
 };
 
-void add_line(inout Samples samples, uint mask, vec4 straight) {
+void add_line(inout Samples samples, uvec2 mask, vec4 straight) {
     mask &= samples.open;
 #ifdef TRANSLUCENT
     float weight = 0.0;
     int i = 0;
-    if (mask != 0u) {
+    if (!is_empty(mask)) {
         do {
-            float taken = (mask >> i & 1u) != 0u ? samples.clear[i] * straight.a : 0.0;
+            float taken = has_sample(mask, i) ? samples.clear[i] * straight.a : 0.0;
             samples.clear[i] -= taken;
             weight += taken;
         } while (++i < sample_count);
     }
     if (straight.a == 1.0) samples.open &= ~mask;
 #else
-    float weight = float(bitCount(mask));
+    float weight = float(count_of(mask));
     samples.open &= ~mask;
 #endif
     samples.sum += weight * vec4(straight.rgb, 1.0);
@@ -174,7 +178,8 @@ vec4 composed(ScreenPlane plane, ivec2 range) {
 #ifdef TRANSLUCENT
     for (int i = 0; i < sample_count; ++i) samples.clear[i] = 1.0;
 #endif
-    uint slot = no_slot, covered = 0u;
+    uint slot = no_slot;
+    uvec2 covered = no_samples;
     LineLook look = LineLook(vec4(0.0), 0.0, 0u);
     float half_width = 0.0;
 #ifdef UNION
@@ -193,12 +198,12 @@ vec4 composed(ScreenPlane plane, ivec2 range) {
 #ifndef UNION
             uint own_slot = texelFetch(segment_joints, index).z;
             if (own_slot != slot && !ended) {
-                if (covered != 0u) add_line(samples, covered, look.color);
-                covered = 0u;
+                if (!is_empty(covered)) add_line(samples, covered, look.color);
+                covered = no_samples;
                 slot = own_slot;
                 look = look_of(slot);
                 half_width = half_width_in_pixels(look, slot, plane.pixels_per_metre);
-                ended = samples.open == 0u;
+                ended = is_empty(samples.open);
             }
 #endif
             float distance = distance_to(segment);
@@ -225,7 +230,7 @@ vec4 composed(ScreenPlane plane, ivec2 range) {
             ended = at < range.x;
         }
     } while (!ended);
-    if (covered != 0u) add_line(samples, covered, look.color);
+    if (!is_empty(covered)) add_line(samples, covered, look.color);
     return samples.sum / float(sample_count);
 }
 
@@ -262,17 +267,25 @@ vec4 composed(ScreenPlane plane, ivec2 range, out uint topmost) {
     float half_width = 0.0;
     int at = range.y - 1;
     bool ended = at < range.x;
+#ifdef UNION
+    look = look_of(0u);
+    half_width = half_width_in_pixels(look, 0u, plane.pixels_per_metre);
+#endif
     do {
         int index = int(texelFetch(tile_list, max(at, 0)).r);
         vec4 ends = texelFetch(segment_ends, index);
-        Joints joints = joints_at(index);
         ScreenSegment segment = on_screen(plane, ends);
+#if !defined(UNION) || defined(JOINED)
+        Joints joints = joints_at(index);
+#endif
+#ifndef UNION
         if (joints.slot != slot) {
             slot = joints.slot;
             look = look_of(slot);
             half_width = half_width_in_pixels(look, slot, plane.pixels_per_metre);
             covered = false;
         }
+#endif
         bool open = !ended && segment.seen && !covered && look.color.a > 0.0 && half_width > 0.0;
 #ifdef JOINED
         bool hit = open && distance_to(segment) <= 4.0 * half_width &&

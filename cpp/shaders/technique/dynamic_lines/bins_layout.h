@@ -8,14 +8,13 @@
 #ifndef DECALGL_BINS_LAYOUT_H
 #define DECALGL_BINS_LAYOUT_H
 
-#define TILE_SIDE 8  // pixels
+#define TILE_SIDE 4  // pixels
 
 // What is left of a segment in a view.
 //     ends    on the map, relative to the base: from x, y; to x, y
 //     joints  next x, y as bits; slot; flags
 #define SEGMENT_BEGINS 1u  // of an open line
 #define SEGMENT_ENDS 2u
-#define ROUND_FROM 4u  // where the line turns so much that the gap shows
-#define ROUND_TO 8u
+#define SEGMENT_TURNS 4u  // at its end so much that the gap to the next one shows
 
 #endif

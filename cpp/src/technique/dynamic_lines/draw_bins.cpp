@@ -45,14 +45,10 @@ void LineBins::draw_tiles(gl::Flags flags, const GBufferView& gbuffer, const Lin
     gl::Program& program = programs.get(is_gathered ? "dynamic_bins_gathered" : "dynamic_bins", flags);
     program.use();
     bind(program, gbuffer, looks);
-    no_vertices_.bind();
-    if (is_gathered) {
+    if (is_gathered)
         gbuffer.set_gathered(program);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        return;
-    }
-    program.set("drawn_size", glm::ivec2(gbuffer.surface->width(), gbuffer.surface->height()));
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, grid_.x * grid_.y);
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void LineBins::draw(const View& view, const GBufferView& gbuffer, const LineLooks& looks,
@@ -66,13 +62,13 @@ void LineBins::draw(const View& view, const GBufferView& gbuffer, const LineLook
     }
     if (entry_count_ > 0) {
         gl::Flags flags;
-        if (view.antialias == Antialias::coverage) {
+        const LineSummary& summary = looks.summary();
+        if (view.antialias == Antialias::coverage)
             flags.insert("COVERAGE");
-            if (looks.summary().has_translucency)
-                flags.insert("TRANSLUCENT");
-            else if (looks.summary().has_one_look)
-                flags.insert("UNION");
-        }
+        if (summary.has_translucency)
+            flags.insert("TRANSLUCENT");
+        else if (summary.has_one_look)
+            flags.insert("UNION");
         draw_tiles(std::move(flags), gbuffer, looks, programs);
     }
     glDisable(GL_BLEND);

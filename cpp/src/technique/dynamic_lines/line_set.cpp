@@ -45,8 +45,8 @@ uint64_t matched_vertices(const PreparedLines& prepared, double longest) {
 
 gl::TextureBuffer make_records(const MemoryAccount& memory, const std::string& name, uint64_t count,
                                const void* data = nullptr) {
-    return gl::TextureBuffer::create(memory, "dynamic: " + name, GL_RGBA32UI, 16 * std::max<uint64_t>(count, 1),
-                                     data);
+    return gl::TextureBuffer::create(memory, "dynamic: " + name, GL_RGBA32UI,
+                                     16 * std::max<uint64_t>(count, 1), data);
 }
 
 void bind_source(gl::Program& program, const gl::TextureBuffer& vertices, const gl::TextureBuffer& lines) {
@@ -81,8 +81,8 @@ void LatticeBase::set(gl::Program& program) const {
     program.set("quantum", quantum);
 }
 
-MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terrain, const MemoryAccount& memory,
-                         gl::ProgramLibrary& programs) {
+MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terrain,
+                         const MemoryAccount& memory, gl::ProgramLibrary& programs) {
     const MatchGrid grid = match_grid(prepared.lattice, *terrain.samples);
     const uint64_t total = matched_vertices(prepared, grid.steps.y);
     if (total > most_matched)
@@ -94,8 +94,7 @@ MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terra
     MatchedLines matched;
     matched.lattice = prepared.lattice;
     matched.line_count = static_cast<uint32_t>(prepared.lines.size());
-    const gl::TextureBuffer vertices =
-        make_records(memory, "source", source_count, prepared.vertices.data());
+    const gl::TextureBuffer vertices = make_records(memory, "source", source_count, prepared.vertices.data());
     const gl::TextureBuffer lines = make_records(memory, "source", matched.line_count, prepared.lines.data());
     // A word more, which becomes the sum of all.
     gl::TextureBuffer offsets = gl::TextureBuffer::create(memory, "dynamic: source", GL_R32UI,

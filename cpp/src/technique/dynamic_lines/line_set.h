@@ -32,8 +32,8 @@ struct MatchedLines {
 };
 
 // Subdivides the lines and puts them on the ground (Zechmeister 2020, sections 3.2.2 and 4.2.2). Throws Error(memory).
-MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terrain, const MemoryAccount& memory,
-                         gl::ProgramLibrary& programs);
+MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terrain,
+                         const MemoryAccount& memory, gl::ProgramLibrary& programs);
 
 // What a view leaves to be drawn. `count` holds four words for indirect calls: (segments, 1, 0, 0).
 struct SegmentList {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "decalgl/core/error.h"
 #include "gl/context.h"
@@ -79,11 +80,14 @@ void LineLists::make_room_for_pixels(const GBufferView& gbuffer) {
     const uint32_t pixels = pixels_of(gbuffer);
     if (totals_ && pixels <= pixel_room_)
         return;
-    for (gl::Buffer* buffer : {&heads_, &counts_, &sorted_, &totals_})
+    heads_ = gl::TextureBuffer();
+    for (gl::Buffer* buffer : {&counts_, &sorted_, &totals_})
         *buffer = gl::Buffer();
     pixel_room_ = pixels;
-    for (gl::Buffer* buffer : {&heads_, &counts_, &sorted_})
-        *buffer = gl::Buffer::create(memory_, "dynamic: lists", sizeof(uint32_t) * size_t{pixels});
+    const size_t bytes = sizeof(uint32_t) * size_t{pixels};
+    heads_ = gl::TextureBuffer::create(memory_, "dynamic: lists", GL_R32UI, bytes);
+    for (gl::Buffer* buffer : {&counts_, &sorted_})
+        *buffer = gl::Buffer::create(memory_, "dynamic: lists", bytes);
     totals_ = gl::Buffer::create(memory_, "dynamic: lists", sizeof(Totals), nullptr, GL_DYNAMIC_STORAGE_BIT);
 }
 
@@ -95,22 +99,24 @@ void LineLists::make_room_for_entries() {
         refuse("this view needs " + std::to_string(entry_count_) + " entries, more than the " +
                std::to_string(most) + " that this driver binds at once");
     const uint64_t wanted = std::max<uint64_t>(first_room_, entry_count_ + uint64_t{entry_count_} / 2);
-    next_ = gl::Buffer();
-    entries_ = gl::Buffer();
+    next_ = gl::TextureBuffer();
+    entries_ = gl::TextureBuffer();
     entry_room_ = static_cast<uint32_t>(std::min(std::max<uint64_t>(wanted, 1), most));
-    next_ = gl::Buffer::create(memory_, "dynamic: lists", sizeof(uint32_t) * size_t{entry_room_});
-    entries_ = gl::Buffer::create(memory_, "dynamic: lists", entry_bytes * entry_room_);
+    next_ = gl::TextureBuffer::create(memory_, "dynamic: lists", GL_R32UI,
+                                      sizeof(uint32_t) * size_t{entry_room_});
+    entries_ = gl::TextureBuffer::create(memory_, "dynamic: lists", GL_RG32UI, entry_bytes * entry_room_);
 }
 
 void LineLists::bind_lists() const {
-    const gl::Buffer* buffers[] = {&heads_, &counts_, &next_, &entries_, &totals_, &sorted_};
+    const gl::Buffer* buffers[] = {&heads_.buffer(),   &counts_, &next_.buffer(),
+                                   &entries_.buffer(), &totals_, &sorted_};
     for (GLuint i = 0; i < 6; ++i)
         buffers[i]->bind_base(GL_SHADER_STORAGE_BUFFER, i);
 }
 
 void LineLists::fill_once(const View& view, const GBufferView& gbuffer, const ListedLines& listed,
                           gl::ProgramLibrary& programs) {
-    fill_words(heads_, 0xFFFFFFFFU);
+    fill_words(heads_.buffer(), 0xFFFFFFFFU);
     fill_words(counts_, 0);
     const Totals none;
     totals_.update(0, sizeof(none), &none);
@@ -181,9 +187,15 @@ void LineLists::sort(const View& view, const GBufferView& gbuffer, gl::ProgramLi
 }
 
 void LineLists::show(const GBufferView& gbuffer, const gl::Flags& flags, gl::ProgramLibrary& programs) const {
-    bind_lists();
     gl::Program& program = programs.get("dynamic_lists", flags);
     program.use();
+    const std::pair<const char*, const gl::TextureBuffer*> buffers[] = {
+        {"list_heads", &heads_}, {"list_next", &next_}, {"list_entries", &entries_}};
+    int unit = 0;
+    for (const auto& [name, buffer] : buffers) {
+        program.set(name, unit);
+        buffer->bind(static_cast<GLuint>(unit++));
+    }
     program.set("picture_width", gbuffer.surface->width());
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -204,6 +216,7 @@ void LineLists::draw(const View& view, const GBufferView& gbuffer, const ListedL
         fill(view, gbuffer, listed, programs);
         if (!is_union)
             sort(view, gbuffer, programs);
+        const gl::PassTimer timer(view.timings, "dynamic: show");
         show(gbuffer, is_union ? gl::Flags{"UNION"} : gl::Flags{}, programs);
     }
     glDisable(GL_BLEND);
@@ -221,7 +234,8 @@ void LineLists::draw_ids(const View& view, const GBufferView& gbuffer, const Lis
 
 uint64_t LineLists::bytes() const {
     uint64_t bytes = 0;
-    for (const gl::Buffer* buffer : {&heads_, &counts_, &sorted_, &next_, &entries_, &totals_})
+    for (const gl::Buffer* buffer :
+         {&heads_.buffer(), &counts_, &sorted_, &next_.buffer(), &entries_.buffer(), &totals_})
         bytes += buffer->bytes();
     return bytes;
 }

@@ -51,8 +51,9 @@ private:
 
     MemoryAccount memory_;
     gl::VertexArray no_vertices_;
-    gl::Buffer heads_, counts_, sorted_;  // of each pixel
-    gl::Buffer next_, entries_;
+    gl::TextureBuffer heads_;  // of each pixel
+    gl::Buffer counts_, sorted_;
+    gl::TextureBuffer next_, entries_;
     gl::Buffer totals_;
     uint32_t pixel_room_ = 0;
     uint32_t entry_room_ = 0;
