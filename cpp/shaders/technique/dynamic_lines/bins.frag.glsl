@@ -85,7 +85,7 @@ vec2 next_direction(ScreenPlane plane, vec4 ends, Joints joints) {
     return direction_of_segment(on_screen(plane, vec4(ends.zw, joints.next)));
 }
 
-#ifdef COVERAGE
+#if defined(COVERAGE) && !defined(IDS)
 
 // A corner that is not round, in the gap between two bars.
 uvec2 corner_mask(vec2 at, vec2 incoming, vec2 outgoing, float half_width, uint kind) {
@@ -329,7 +329,7 @@ void main() {
 #else
 
 vec4 color_in(ScreenPlane plane, ivec2 range) {
-#ifdef COVERAGE
+#if defined(COVERAGE) && !defined(IDS)
     return composed(plane, range);
 #else
     uint topmost;

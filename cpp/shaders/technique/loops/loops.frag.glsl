@@ -40,23 +40,21 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Position position = unpack_position(texelFetch(position_texture, pixel, 0));
     if (is_sky(position)) discard;
-#if defined(SAMPLES)
+#if defined(IDS)
+    Found found = walk(lattice_point(position, vec2(0.0)));
+    if (found.seen == no_slot) discard;
+    id = found.seen + 1u;
+#elif defined(SAMPLES)
     vec4 surface = texelFetch(surface_texture, pixel, 0);
     mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < sample_count; ++i) sum += walk(lattice_point(position, foot * sample_offsets[i])).sum;
     color = sum / float(sample_count);
-#else
-    Found found = walk(lattice_point(position, vec2(0.0)));
-#if defined(TESTED)
-    color = heat(found.tested);
+#elif defined(TESTED)
+    color = heat(walk(lattice_point(position, vec2(0.0))).tested);
 #elif defined(ACTIVE)
-    color = heat(found.active_count);
-#elif defined(IDS)
-    if (found.seen == no_slot) discard;
-    id = found.seen + 1u;
+    color = heat(walk(lattice_point(position, vec2(0.0))).active_count);
 #else
-    color = found.sum;
-#endif
+    color = walk(lattice_point(position, vec2(0.0))).sum;
 #endif
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <string>
 
@@ -35,9 +37,8 @@ uint64_t matched_vertices(const PreparedLines& prepared, double longest) {
     const Span<const SourceVertex> vertices = prepared.vertices.span();
     for (size_t i = 0; i < vertices.size(); ++i) {
         const bool ends = i + 1 == vertices.size() || vertices[i + 1].line != vertices[i].line;
-        const double length = ends ? 0.0
-                                   : std::hypot(double{vertices[i + 1].place.x} - vertices[i].place.x,
-                                                double{vertices[i + 1].place.y} - vertices[i].place.y);
+        const double length =
+            ends ? 0.0 : glm::distance(glm::dvec2(vertices[i + 1].place), glm::dvec2(vertices[i].place));
         total += length > longest ? static_cast<uint64_t>(length / longest) + 1 : 1;
     }
     return total;
@@ -61,10 +62,10 @@ void bind_source(gl::Program& program, const gl::TextureBuffer& vertices, const 
 LatticeBase::LatticeBase(const LineLattice& lattice, const View& view)
     : quantum(static_cast<float>(lattice.quantum)) {
     const ViewBlock& block = *view.block;
-    const auto split = [&](double metres, int32_t& whole, float& rest) {
+    const auto split = [&](double metres, int32_t& whole, float& remainder) {
         const double limit = lattice_reach;
         whole = static_cast<int32_t>(std::lrint(std::clamp(metres / lattice.quantum, -limit, limit)));
-        rest = static_cast<float>(metres - whole * lattice.quantum);
+        remainder = static_cast<float>(metres - whole * lattice.quantum);
     };
     const auto from_origin = [&](double grid_origin, int32_t blocks, float offset, double origin) {
         return (grid_origin - origin) + blocks * view.positions.block_size + static_cast<double>(offset);
