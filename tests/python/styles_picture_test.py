@@ -33,9 +33,7 @@ TABLED = (
     "plain", "outlines", "wide_outlines", "inset_odd_rings", "offset_odd_rings", "outline_orders",
     "outlines_of_neighbours", "hatches", "hatches_aslant", "tangent_slopes", "thoeny_slopes",
 )  # fmt: skip
-PLACED = [(name, "bvh") for name in styles.STYLES] + [
-    (name, "grid") for name in styles.STYLES if name not in TABLED
-]
+PLACED = [(name, "grid") for name in styles.STYLES if name not in TABLED]
 FILTERED = [
     (name, index)
     for i, name in enumerate(styles.STYLES)
@@ -49,11 +47,13 @@ QUANTA = 2.0
 STEPS = {"grid": 1.1, "bvh": 2.1}
 # Crops whose coverage is judged: at its own 32 places in a pixel, and over the area by some samples a pixel each way.
 WIDE_CROP = (160, 90)
-CROP, SAMPLES = (80, 45), 16
+CROP, SAMPLES = (40, 24), 32
 # Metres of a pixel's shorter side that are surely not drawn from levels of detail, which tell more than 32 places.
 NEAR = 0.6
-# Over the partly covered pixels of a crop. Of 32 places with the right answers 0.024 and 0.08 remain on opaque edges.
-RMS, P99 = 0.03, 0.09
+# Over the partly covered pixels of a crop. Of 32 places with the right answers 0.024 and 0.08 remain on opaque edges; the
+# published index has 64 that follow a border.
+RMS = {"grid": 0.03, "bvh": 0.015}
+P99 = {"grid": 0.09, "bvh": 0.05}
 # The lack of alpha where a pixel is covered all over.
 LEAK = 0.02
 
@@ -130,9 +130,9 @@ def test_coverage_is_the_mean_over_the_pixel(name: str, index: str) -> None:
     got = judge.overlay_of(renderer(index), view, "coverage")[y0:y1, x0:x1]
     ignored = expected.mixed | (expected.terrain_fraction < 1.0) | judge.folded(view, crop, surface, SAMPLES)
     found = ref.compare_overlay(got, expected, ignore=ignored)
-    assert found.partial >= 100
-    assert found.rms <= RMS, found
-    assert found.p99 <= P99, found
+    assert found.partial >= 50
+    assert found.rms <= RMS[index], found
+    assert found.p99 <= P99[index], found
     assert found.leak <= LEAK, found
 
 
