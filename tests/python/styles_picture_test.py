@@ -50,8 +50,8 @@ WIDE_CROP = (160, 90)
 CROP, SAMPLES = (40, 24), 32
 # Metres of a pixel's shorter side that are surely not drawn from levels of detail, which tell more than 32 places.
 NEAR = 0.6
-# Over the partly covered pixels of a crop. Of 32 places with the right answers 0.024 and 0.08 remain on opaque edges; the
-# published index has 64 that follow a border.
+# Over the partly covered pixels of a crop. Of 32 places with the right answers 0.024 and 0.08 remain on opaque edges;
+# the published index has 64 that follow a border.
 RMS = {"grid": 0.03, "bvh": 0.015}
 P99 = {"grid": 0.09, "bvh": 0.05}
 # The lack of alpha where a pixel is covered all over.

@@ -8,7 +8,7 @@
 #endif
 
 // A pixel of more cells is taken to have some.
-const int most_cells_searched = 1024;
+const int most_cells_searched = 16;
 
 // What the fills that cover all of the pixel's part in a cell add up to: equal in all parts where no border is between.
 uint signature_of(uint slot) {
