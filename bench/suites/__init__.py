@@ -12,6 +12,7 @@ stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
+volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from . import (
     stacks,
     styles,
     views,
+    volume,
 )
 
 if TYPE_CHECKING:
@@ -52,4 +54,5 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "ring": ring.measure,
     "interaction": interaction.measure,
     "styles": styles.measure,
+    "volume": volume.measure,
 }

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .coloring import Coloring
     from .features import FeatureTable, Kind
     from .strokes import Fill, OutlineMode, OutlineOrder, Stroke
+    from .techniques import Technique
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,7 @@ class Layer:
     outline_mode: which side of a polygon's border its outline lies on. outline_order: over all fills of the layer,
         or each over its own feature's.
     draw_order: int64 (features), features from bottom to top.
+    technique: who draws it.
     coloring: how the colours came about, for legends; of polygons' outlines `outline_coloring`, None without.
     attributes: the columns beside the geometry, for restyling by them.
     """
@@ -38,6 +40,7 @@ class Layer:
     features: FeatureTable
     draw_order: NDArray[np.int64] = field(repr=False)
     coloring: Coloring = field(repr=False)
+    technique: Technique
     fill: Fill | None = field(default=None, repr=False)
     stroke: Stroke | None = field(default=None, repr=False)
     casing: Stroke | None = field(default=None, repr=False)

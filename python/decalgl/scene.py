@@ -9,15 +9,15 @@ import numpy as np
 
 from ._choices import LayerRows
 from ._colors import colormap, parse_color
-from ._values import is_word
 from .camera import Camera
-from .errors import InputError, StyleError, UnsupportedError, close_matches
+from .errors import InputError
 from .features import LARGEST_COORDINATE, FeatureTable, Kind, read_features
 from .layer import Layer
 from .legend import require_drawable
 from .strokes import MITER_LIMIT
 from .styles import ColorKeywords, StrokeKeywords
 from .styling import WIDEST_LINE, LineKeywords, PolygonKeywords
+from .techniques import Technique, resolve_technique
 from .terrain import Terrain
 
 __all__ = ["Layer", "Relief", "Scene"]
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from .frame import Frame
     from .renderer import Renderer
     from .styles import Casing, Outline, WidthUnits
-
-Technique = Literal["auto", "static"]
-PLANNED_TECHNIQUES = ("dynamic",)
 
 
 @dataclass(frozen=True)
@@ -163,7 +160,7 @@ class Scene:
         hatch: Any = None,
         outline: Outline | None = None,
         order: Any = "feature",
-        technique: Technique = "auto",
+        technique: str | Technique = "auto",
     ) -> Layer:
         """Adds a layer of polygons on top of the others.
 
@@ -177,6 +174,8 @@ class Scene:
         outline: an `Outline`.
         order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
             missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
+        technique: who draws the layer: "auto", "static", "dynamic" or a `Technique` (`decalgl.techniques`). Neighbouring layers of
+            one technique are one pass; between passes only colour and coverage are known.
 
         Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """
@@ -214,14 +213,18 @@ class Scene:
         bands: Any = None,
         slope_correction: Literal["thoeny", "tangent"] | None = None,
         widest: float | None = None,
+        width_min_px: float | None = None,
+        width_max_px: float | None = None,
+        width_min_m: float | None = None,
+        width_max_m: float | None = None,
         order: Any = "feature",
-        technique: Technique = "auto",
+        technique: str | Technique = "auto",
     ) -> Layer:
         """Adds a layer of lines on top of the others.
 
         width: one number, one for each row, a column's name, or a dict {category: width} by the categories of
-            `column`. width_units: "m", metres on the map plane. "px", pixels on the screen, is not drawn by this
-            version.
+            `column`. width_units: "m", metres on the map plane; "px", pixels on the screen at every zoom.
+        width_min_px ... width_max_m: what widths are kept between, in pixels, or in metres as they are seen head-on.
         corner: "round", "miter" or "bevel". cap: "round", "butt" or "square". Each is one for all, one for each
             row, a column's name, or a dict by category.
         miter_limit: degrees between two segments; sharper corners than that are round.
@@ -237,11 +240,25 @@ class Scene:
         The other arguments, and the errors, are those of `add_polygons`; StyleError too for widths that are
         not positive, UnsupportedError for what this version does not draw.
         """
+        if isinstance(technique, Technique) and technique.names_widths:
+            width, width_units = 1.0, "m"
         colors = ColorKeywords(
             column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, legend_kwds, missing_kwds
         )
         stroke = StrokeKeywords(
-            width, width_units, corner, cap, miter_limit, dash, bands, slope_correction, widest
+            width,
+            width_units,
+            corner,
+            cap,
+            miter_limit,
+            dash,
+            bands,
+            slope_correction,
+            widest,
+            width_min_px,
+            width_max_px,
+            width_min_m,
+            width_max_m,
         )
         looks = LineKeywords(colors, stroke, casing)
         return self._add("lines", data, name, layer, crs, looks, order, technique)
@@ -289,11 +306,11 @@ class Scene:
         crs: Any,
         looks: LineKeywords | PolygonKeywords,
         order: Any,
-        technique: str,
+        technique: str | Technique,
     ) -> Layer:
         name = f"{kind} {len(self._layers)}" if name is None else str(name)
         looks.check(name)
-        _require_technique(name, technique)
+        chosen = resolve_technique(technique, name, looks.follows_view)
         table, attributes = read_features(
             data, kind, terrain_crs=self.terrain.crs, layer_name=name, crs=crs, layer=file_layer
         )
@@ -301,7 +318,15 @@ class Scene:
         widest = WIDEST_LINE * (max(x1 - x0, y1 - y0) or 1.0)
         resolved = looks.resolve(LayerRows(name, attributes, table.rows, widest))
         draw_order = draw_order_of(order, table, attributes)
-        layer = Layer(name, len(self._layers), table, draw_order, **vars(resolved), attributes=attributes)
+        layer = Layer(
+            name,
+            len(self._layers),
+            table,
+            draw_order,
+            technique=chosen.bound_to(name, table.rows, attributes),
+            **vars(resolved),
+            attributes=attributes,
+        )
         if layer.coloring.legend:
             require_drawable(layer)
         self._layers.append(layer)
@@ -340,20 +365,6 @@ def _checked_exaggeration(terrain: Terrain, exaggeration: Any) -> float:
             " exaggeration."
         )
     return factor
-
-
-def _require_technique(layer_name: str, technique: str) -> None:
-    if is_word(technique, ("auto", "static")):
-        return
-    if is_word(technique, PLANNED_TECHNIQUES):
-        raise UnsupportedError(
-            f"Layer {layer_name!r}: technique={technique!r} is not drawn by this version. Use 'auto' or"
-            " 'static'."
-        )
-    hint = close_matches(technique, ("auto", "static"))
-    raise StyleError(
-        f"Layer {layer_name!r}: there is no technique={technique!r}.{hint} Use 'auto' or 'static'."
-    )
 
 
 def draw_order_of(order: Any, table: FeatureTable, attributes: Attributes) -> NDArray[np.int64]:

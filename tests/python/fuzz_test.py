@@ -107,7 +107,7 @@ def assert_draws(renderer: _core.Renderer) -> None:
     square = np.array([[0, 0], [100, 0], [100, 100], [0, 100]], dtype=np.float64)
     one = np.array([0, 1])
     fill = core_fill(np.full(4, 255, np.uint8))
-    scene.add_layer("a", True, square, 4 * one, one, one[:1], fill, *NO_OUTLINES, one[:1])
+    scene.add_layer("a", "static", None, True, square, 4 * one, one, one[:1], fill, *NO_OUTLINES, one[:1])
     render_all(renderer, scene)
 
 
@@ -133,7 +133,9 @@ def test_layers(renderer: _core.Renderer, data: Any) -> None:
             if data.draw(st.booleans()):
                 widths, style_of = data.draw(arrays(odd_floats)), data.draw(places)
                 looks[role] = core_stroke(data.draw(arrays(colors)), widths, style_of=style_of)
-        scene.add_layer(name="odd", polygons=data.draw(st.booleans()), **given_arrays, **looks)
+        technique = data.draw(st.sampled_from(("static", "static", "static_bvh", "", "odd")))
+        polygons = data.draw(st.booleans())
+        scene.add_layer("odd", technique, None, polygons, **given_arrays, **looks)
 
     attempt(add)
     attempt(lambda: render_all(renderer, scene))

@@ -43,15 +43,13 @@ class Bounds(NamedTuple):
 
 
 EXACT = Bounds(0.015, 0.05, 0.02)
-# Samples that are asked one by one: strokes that are not all round.
-ASKED = Bounds(0.03, 0.09, 0.02)
 ESTIMATED = Bounds(0.09, 0.4, 0.1)
 # From afar nearly every pixel holds several dashes, and no one border that its samples could follow.
 FAR = Bounds(0.02, 0.06, 0.02)
 # Where lines cross, the one that is nearest to the centre takes all of the pixel.
 NEAREST = Bounds(0.12, 0.6, 0.1)
 COVERAGE = {
-    ("grid", "coverage"): ASKED,
+    ("grid", "coverage"): EXACT,
     ("bvh", "coverage"): EXACT,
     ("thoeny", "coverage"): EXACT,
     ("grid", "thoeny"): ESTIMATED,

@@ -207,7 +207,7 @@ def test_scenes_check_their_terrain(make: Any, message: str) -> None:
         (squares((0, 0, 1)), {"alpha": 1.5}, dg.StyleError, "'parks'.*alpha"),
         (squares((0, 0, 1)), {"order": "rank"}, dg.ColumnError, "'parks' has no column 'rank'"),
         (squares((0, 0, 1)), {"order": [1, 2]}, dg.InputError, "order of layer 'parks'.*1 rows"),
-        (squares((0, 0, 1)), {"technique": "dynamic"}, dg.UnsupportedError, "'parks'.*'static'"),
+        (squares((0, 0, 1)), {"technique": "draped"}, dg.StyleError, "'parks'.*'static'"),
         (squares((0, 0, 1)), {"technique": "statik"}, dg.StyleError, "Did you mean 'static'"),
         (squares((0, 0, 1)), {"crs": UTM}, dg.CrsError, "'parks'.*terrain has no CRS"),
         ((np.array([[0, 0], [NAN, 1], [1, 1]]), [0, 3]), {}, dg.InputError, "'parks'.*NaN.*row 0"),

@@ -44,7 +44,7 @@ TEST_CASE("nested squares alternate", "[bvh]") {
     }
     const auto bvh = build({polygons({feature})});
     for (int i = 0; i < 10; ++i)
-        CHECK(bvh->query(1310 + 20 * i, 2500).size() == (i % 2 == 0 ? 1 : 0));
+        CHECK(bvh->query({1310.0 + 20 * i, 2500}).size() == (i % 2 == 0 ? 1 : 0));
 }
 
 TEST_CASE("a comb of level and upright edges", "[bvh]") {
@@ -89,7 +89,7 @@ TEST_CASE("neighbours of a BVH index own each point once", "[bvh]") {
         const double t = random.between(0, 1), jitter = random.between(-1, 1) * bvh->lattice.quantum;
         const double x = std::clamp(a[0] + t * (a[2] - a[0]) + jitter, test_bounds.min_x, test_bounds.max_x);
         const double y = std::clamp(a[1] + t * (a[3] - a[1]), test_bounds.min_y, test_bounds.max_y);
-        REQUIRE(bvh->query(x, y).size() == 1);
+        REQUIRE(bvh->query({x, y}).size() == 1);
     }
 }
 
@@ -167,6 +167,6 @@ TEST_CASE("hatches of a BVH index lie where their definition says", "[bvh]") {
         if (crossed)
             nearest = std::min(nearest, apart(p.x * std::cos(a) + p.y * std::sin(a)));
         if (std::abs(nearest - 1.0) > 1e-5)
-            REQUIRE(bvh->query(p.x, p.y).size() == (nearest < 1.0 ? 1 : 0));
+            REQUIRE(bvh->query({p.x, p.y}).size() == (nearest < 1.0 ? 1 : 0));
     }
 }

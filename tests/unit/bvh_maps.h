@@ -153,7 +153,7 @@ inline double distance_to(const Feature& feature, Position p) {
 
 inline std::vector<bool> found_at(const PreparedBvh& bvh, size_t features, Position p) {
     std::vector<bool> found(features, false);
-    for (const FeatureReference& reference : bvh.query(p.x, p.y))
+    for (const FeatureReference& reference : bvh.query({p.x, p.y}))
         found[reference.feature] = true;
     return found;
 }

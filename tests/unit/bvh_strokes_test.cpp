@@ -273,7 +273,7 @@ TEST_CASE("a pattern stays in step on a line of a thousand kilometres", "[bvh]")
         const bool expected = holds(p);
         on += expected;
         if (is_sure(p, 1e-3, expected, holds))
-            REQUIRE(bvh->query(p.x, p.y).size() == (expected ? 1 : 0));
+            REQUIRE(bvh->query({p.x, p.y}).size() == (expected ? 1 : 0));
     }
     CHECK(on > 500);
 }
@@ -323,8 +323,8 @@ TEST_CASE("a band without a colour is a gap, and a stroke without a width nothin
     layer.stroke.styles[0].bands = {{0.5, {1, 2, 3, 0}}, {1.0, {4, 5, 6, 255}}};
     layer.stroke.widest = 60.0;
     const auto bvh = build({layer});
-    CHECK(bvh->query(1500, 2502).empty());
-    CHECK(bvh->query(1500, 2507).size() == 1);
-    CHECK(bvh->query(1500, 2511).empty());
-    CHECK(bvh->query(1500, 2600).empty());
+    CHECK(bvh->query({1500, 2502}).empty());
+    CHECK(bvh->query({1500, 2507}).size() == 1);
+    CHECK(bvh->query({1500, 2511}).empty());
+    CHECK(bvh->query({1500, 2600}).empty());
 }

@@ -58,7 +58,7 @@ std::vector<std::pair<uint32_t, int64_t>> picks(const PreparedScene& scene) {
     for (double x = 995.0; x < 1145.0; x += 3.7)
         for (double y = 2855.0; y < 3005.0; y += 3.7)
             for (const PreparedPass& pass : scene.passes)
-                for (const FeatureReference& reference : pass.prepared->query(x, y))
+                for (const FeatureReference& reference : pass.prepared->query({x, y}))
                     found.emplace_back(reference.layer, scene.row_of(reference));
     return found;
 }

@@ -21,7 +21,7 @@ TEST_CASE("what lies far beyond the map is cut, and the rest stays exact", "[bvh
     for (int sample = 0; sample < 1500; ++sample) {
         const Position p{random.between(1000, 1997), random.between(2000, 2991)};
         std::vector<bool> in_rings(rings.size()), in_strokes(strokes.size());
-        for (const FeatureReference& reference : bvh->query(p.x, p.y))
+        for (const FeatureReference& reference : bvh->query({p.x, p.y}))
             (reference.layer == 0 ? in_rings : in_strokes)[reference.feature] = true;
         for (size_t i = 0; i < rings.size(); ++i) {
             // Cuts are rounded, and doubles that far out are no better.
@@ -92,10 +92,10 @@ TEST_CASE("groups follow the passes asked for, and slots the draw order", "[bvh]
     const auto bvh = build(layers, options);
     CHECK(bvh->groups.size() == (options.passes == PassGrouping::layer ? 3 : 2));
     std::vector<std::pair<uint32_t, uint32_t>> found;
-    for (const FeatureReference& each : bvh->query(1150, 2150))
+    for (const FeatureReference& each : bvh->query({1150, 2150}))
         found.emplace_back(each.layer, each.feature);
     CHECK(found == std::vector<std::pair<uint32_t, uint32_t>>{{2, 0}, {1, 0}, {0, 0}, {0, 2}});
-    CHECK(bvh->query(5000, 2150).empty());
+    CHECK(bvh->query({5000, 2150}).empty());
 }
 
 TEST_CASE("a cancelled, an excessive and an impossible BVH index", "[bvh]") {
@@ -118,7 +118,7 @@ TEST_CASE("a cancelled, an excessive and an impossible BVH index", "[bvh]") {
     options.segment_order = SegmentOrder::hilbert;
     CHECK(kind_of_build({glass}, options, true) == ErrorKind::unsupported);
     options.composition = Composition::nearest;
-    CHECK(build({glass}, options)->query(1150, 2150).size() == 1);
+    CHECK(build({glass}, options)->query({1150, 2150}).size() == 1);
 }
 
 TEST_CASE("complete trees and the curve", "[bvh]") {
@@ -153,6 +153,6 @@ TEST_CASE("fills and outlines go together where they must, and a feature is foun
     CHECK(bvh->counts().features == 2);
     CHECK(bvh->counts().segments == 8);
     CHECK(bvh->slots.size() == 4);
-    const std::vector<FeatureReference> found = bvh->query(1102, 2150);
+    const std::vector<FeatureReference> found = bvh->query({1102, 2150});
     CHECK(found == std::vector<FeatureReference>{{0, 1}, {0, 0}});
 }

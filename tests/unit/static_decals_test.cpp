@@ -177,7 +177,7 @@ TEST_CASE("polygons agree with brute force at random points", "[static]") {
         if (snap > 0.0 && sample % 3 == 0)
             x = std::clamp(std::round(x / snap) * snap, test_bounds.min_x, test_bounds.max_x);
         std::vector<bool> found(rings.size(), false);
-        for (const FeatureReference& reference : decals->query(x, y))
+        for (const FeatureReference& reference : decals->query({x, y}))
             found[reference.feature] = true;
         for (size_t i = 0; i < rings.size(); ++i) {
             // Cuts at cell borders are rounded: within a quantum and a half of an edge either answer stands.
@@ -206,7 +206,7 @@ TEST_CASE("lines agree with brute force at random points", "[static]") {
         const double y =
             std::clamp(near[1] + random.between(-reach, reach), test_bounds.min_y, test_bounds.max_y);
         std::vector<bool> found(parts.size(), false);
-        for (const FeatureReference& reference : decals->query(x, y))
+        for (const FeatureReference& reference : decals->query({x, y}))
             found[reference.feature] = true;
         for (size_t i = 0; i < parts.size(); ++i) {
             Ring line = parts[i];
@@ -255,7 +255,7 @@ TEST_CASE("neighbours that share a border own each point once", "[static]") {
         const double jitter = sample % 4 == 0 ? 0.0 : random.between(-1, 1) * decals->grid.quantum;
         const double x = std::clamp(a[0] + t * (a[2] - a[0]) + jitter, test_bounds.min_x, test_bounds.max_x);
         const double y = std::clamp(a[1] + t * (a[3] - a[1]) + jitter, test_bounds.min_y, test_bounds.max_y);
-        REQUIRE(decals->query(x, y).size() == 1);
+        REQUIRE(decals->query({x, y}).size() == 1);
     }
 }
 
@@ -291,7 +291,7 @@ TEST_CASE("a ring is the same whether one run holds it or many do", "[static]") 
     for (int sample = 0; sample < 300; ++sample) {
         const double x = random.between(1000.0, 1997.0), y = random.between(2000.0, 2991.0);
         if (distance_to_ring(star, x, y) > 1.5 * decals->grid.quantum)
-            REQUIRE(decals->query(x, y).size() == (inside(decals->grid, star, x, y) ? 1 : 0));
+            REQUIRE(decals->query({x, y}).size() == (inside(decals->grid, star, x, y) ? 1 : 0));
     }
 }
 
@@ -302,8 +302,8 @@ TEST_CASE("long lists end where they should", "[static]") {
     const auto decals = build({polygons(rings)});
     require_well_formed(*decals);
     CHECK(decals->longest_list > 4 * COUNT_ESCAPE);
-    CHECK(decals->query(1500.25, 2500.25).size() == rings.size());
-    CHECK(decals->query(1500.25, 2500.75).empty());
+    CHECK(decals->query({1500.25, 2500.25}).size() == rings.size());
+    CHECK(decals->query({1500.25, 2500.75}).empty());
 }
 
 TEST_CASE("dense places have finer cells", "[static]") {
@@ -332,7 +332,7 @@ TEST_CASE("draw order, transparent features and rows", "[static]") {
     layer.fill.colors = {1, 2, 3, 255, 4, 5, 6, 0, 7, 8, 9, 128};
     layer.draw_order = {2, 1, 0};
     const auto decals = build({layer});
-    const auto found = decals->query(1150, 2150);
+    const auto found = decals->query({1150, 2150});
     REQUIRE(found.size() == 2);
     CHECK(found[0].feature == 0);
     CHECK(found[1].feature == 2);
@@ -366,7 +366,7 @@ TEST_CASE("many large polygons over each other do not fill the memory", "[static
     }
     const auto decals = build({polygons(rings)});
     CHECK(decals->counts().bytes < (uint64_t{128} << 20));
-    CHECK(decals->query(1500, 2500).size() == rings.size());
+    CHECK(decals->query({1500, 2500}).size() == rings.size());
 }
 
 TEST_CASE("levels of detail keep the coverage of every kind of feature", "[static]") {
@@ -378,7 +378,7 @@ TEST_CASE("levels of detail keep the coverage of every kind of feature", "[stati
         parts.push_back(random.part(4, 200.0, 0.0));
     const double width = GENERATE(0.7, 60.0);
     const auto decals = build({polygons(rings), lines(parts, {width})});
-    const LevelRaster raster = draw_finest_level(*decals);
+    const LevelRaster raster = LevelPainter().draw(*decals);
     const double texel = decals->grid.bucket_size / LEVEL_TEXELS;
     REQUIRE(raster.width == decals->grid.columns * LEVEL_TEXELS);
     // Means over blocks of 8 x 8 texels against as many points as an area needs.
@@ -396,7 +396,7 @@ TEST_CASE("levels of detail keep the coverage of every kind of feature", "[stati
             for (int i = 0; i < points; ++i) {
                 const double x = decals->grid.left() + (column + 8.0 * random.between(0, 1)) * texel;
                 const double y = decals->grid.bottom() + (row + 8.0 * random.between(0, 1)) * texel;
-                hit += decals->query(x, y).empty() ? 0.0 : 1.0;
+                hit += decals->query({x, y}).empty() ? 0.0 : 1.0;
             }
             const double difference = drawn / 64.0 - hit / points;
             REQUIRE(std::abs(difference) < 0.13);  // five deviations of 400 points

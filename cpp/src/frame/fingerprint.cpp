@@ -15,6 +15,10 @@ void add(const Stroke& stroke, DigestBuilder& builder) {
     add(stroke.widths, builder);
     add(stroke.style_of, builder);
     builder.add_value(stroke.widest);
+    builder.add_value(stroke.units);
+    for (const double limit : {stroke.limits.least_px, stroke.limits.most_px, stroke.limits.least_metres,
+                               stroke.limits.most_metres})
+        builder.add_value(limit);
     for (const StrokeStyle& style : stroke.styles) {
         builder.add_value(style.corner);
         builder.add_value(style.cap);
@@ -51,6 +55,7 @@ Digest digest_of_look(const Relief& relief, const std::vector<Layer>& layers, un
         builder.add_value(value);
     for (const Layer& layer : layers) {
         builder.add(Span<const char>(layer.name.data(), layer.name.size()));
+        builder.add(Span<const char>(layer.technique.name.data(), layer.technique.name.size()));
         builder.add_value(layer.features.kind);
         add(layer.fill, builder);
         add(layer.stroke, builder);

@@ -73,6 +73,10 @@ void Pipeline::set_sample(const Piece& piece, glm::vec2 jitter) {
     view_block_.picture.x = piece.drawn.x;
     view_block_.picture.y = piece.drawn.y;
     view_block_.jitter = glm::vec4(jitter, 0.0F, 0.0F);
+    write_view_block();
+}
+
+void Pipeline::write_view_block() {
     view_buffer_.update(0, sizeof(ViewBlock), &view_block_);
     view_buffer_.bind_base(GL_UNIFORM_BUFFER, 0);
 }
@@ -105,6 +109,7 @@ void Pipeline::draw_overlay(const SeenTargets& seen, Antialias antialias) {
         const gl::PassTimer timer(&timings_, techniques_[i]->name());
         seen.overlay_framebuffer.bind();
         techniques_[i]->draw(view, surface, programs_);
+        view.has_below = true;
     }
 }
 

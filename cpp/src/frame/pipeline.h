@@ -8,6 +8,8 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "decalgl/frame/picture_request.h"
@@ -37,7 +39,7 @@ public:
     std::vector<uint8_t> draw_image();
     // Of each pass from bottom to top: 1 + id at each pixel's centre, 0 where there is none.
     std::vector<std::vector<uint32_t>> draw_ids();
-    void draw_surface(std::vector<double>& world, std::vector<float>& depth);
+    void draw_surface(std::vector<double>& world, std::vector<float>& depth, std::vector<float>& gradients);
     // Milliseconds that the floor pass takes, for benchmarks.
     double time_floor();
 
@@ -47,6 +49,8 @@ public:
     uint64_t triangles() const { return triangles_; }
     // Of the last picture: pixels that were drawn anew since more than one surface is seen in them.
     uint64_t silhouette_pixels() const { return silhouette_pixels_; }
+    // Of the techniques' last update.
+    const std::vector<std::pair<std::string, double>>& counts() const { return counts_; }
 
 private:
     // A rectangle of the picture. What is drawn reaches beyond what is shown where passes look at neighbours.
@@ -59,6 +63,7 @@ private:
     void upload(std::shared_ptr<const PreparedScene> scene);
     void upload_layers(const PreparedScene& scene);
     void set_view();
+    void write_view_block();
     bool has_lens() const;
     GBufferView look_through_lens(const SeenTargets& seen);
     void choose_pieces();
@@ -103,6 +108,7 @@ private:
     std::vector<Piece> pieces_;
     uint64_t triangles_ = 0;
     uint64_t silhouette_pixels_ = 0;
+    std::vector<std::pair<std::string, double>> counts_;
 
     LensMask lens_mask_;
     LensMask gathered_lens_mask_;

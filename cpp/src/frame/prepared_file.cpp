@@ -26,6 +26,12 @@ struct SceneRecord {
 };
 static_assert(sizeof(SceneRecord) == 104, "saved as it is");
 
+struct PassRecord {
+    uint32_t first_layer;
+    uint32_t layer_count;
+};
+static_assert(sizeof(PassRecord) == 8, "saved as it is");
+
 struct LayerRecord {
     uint32_t kind;
     uint32_t name_bytes;
@@ -172,6 +178,9 @@ void read_passes(const ArchiveReader& archive, const MemoryAccount& memory, Prep
     for (uint32_t i = 0; i < count; ++i) {
         PreparedPass pass;
         pass.technique = archive.text(pass_prefix(i) + "technique");
+        const auto record = archive.value<PassRecord>(pass_prefix(i) + "layers");
+        pass.first_layer = record.first_layer;
+        pass.layer_count = record.layer_count;
         pass.prepared = make_technique(pass.technique)->open(archive, pass_prefix(i), memory);
         require_features(archive, scene, *pass.prepared);
         scene.passes.push_back(std::move(pass));
@@ -233,8 +242,10 @@ void save_scene(const PreparedScene& scene, const std::string& path, unsigned th
     archive.add("heights", scene.terrain.heights().span());
     archive.add("illumination", scene.illumination.span());
     for (size_t i = 0; i < scene.passes.size(); ++i) {
-        archive.add_text(pass_prefix(i) + "technique", scene.passes[i].technique);
-        scene.passes[i].prepared->save(archive, pass_prefix(i));
+        const PreparedPass& pass = scene.passes[i];
+        archive.add_text(pass_prefix(i) + "technique", pass.technique);
+        archive.add_value(pass_prefix(i) + "layers", PassRecord{pass.first_layer, pass.layer_count});
+        pass.prepared->save(archive, pass_prefix(i));
     }
     archive.write(path, threads, progress);
 }

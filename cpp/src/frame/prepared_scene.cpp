@@ -55,6 +55,17 @@ void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, Pr
     prepared.timings.add("terrain", watch.milliseconds());
 }
 
+void prepare_pass(const std::string& technique, const TechniqueInput& input, Progress progress,
+                  PreparedScene& prepared) {
+    const Stopwatch watch;
+    PreparedPass pass{technique, input.first_layer, static_cast<uint32_t>(input.layers.size()),
+                      make_technique(technique)->preprocess(input, progress), nullptr};
+    prepared.timings.add(technique, watch.milliseconds());
+    // Layers without anything to draw cost no pass.
+    if (pass.prepared->counts().features > 0)
+        prepared.passes.push_back(std::move(pass));
+}
+
 void prepare_layers(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
                     Progress progress, PreparedScene& prepared) {
     const bool has_ground = scene.terrain.rows() > 1 && scene.terrain.columns() > 1;
@@ -62,22 +73,24 @@ void prepare_layers(const Scene& scene, const RendererOptions& options, const Me
         return;
     for (const Layer& layer : scene.layers)
         validate_reach(layer, prepared.terrain.bounds());
-    const Stopwatch watch;
     TechniqueInput input;
-    input.layers = scene.layers;
+    input.terrain = &prepared.terrain;
     input.bounds = prepared.terrain.bounds();
     input.positions = prepared.positions;
     input.threads = options.threads;
     input.memory = memory;
     input.bvh = options.bvh;
-    PreparedPass pass;
-    pass.technique = options.index == "bvh" ? "static_bvh" : "static";
-    pass.prepared = make_technique(pass.technique)->preprocess(input, progress);
-    prepared.timings.add(pass.technique, watch.milliseconds());
-    prepared.passes.push_back(std::move(pass));
-    // Layers without anything to draw cost no pass.
-    if (prepared.passes.back().prepared->counts().features == 0)
-        prepared.passes.pop_back();
+    size_t end = 0;
+    for (size_t begin = 0; begin < scene.layers.size(); begin = end) {
+        const TechniqueChoice& choice = scene.layers[begin].technique;
+        while (end < scene.layers.size() && scene.layers[end].technique == choice)
+            ++end;
+        input.layers = Span<const Layer>(scene.layers).subspan(begin, end - begin);
+        input.first_layer = static_cast<uint32_t>(begin);
+        const std::string technique =
+            choice.name == "static" && options.index == "bvh" ? "static_bvh" : choice.name;
+        prepare_pass(technique, input, progress, prepared);
+    }
 }
 
 }  // namespace

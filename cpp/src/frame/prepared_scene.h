@@ -19,8 +19,12 @@ namespace decalgl {
 // Neighbouring layers of one technique are one pass.
 struct PreparedPass {
     std::string technique;
+    uint32_t first_layer = 0;
+    uint32_t layer_count = 0;
     std::shared_ptr<const Prepared> prepared;
-    std::shared_ptr<const Prepared> in_lens;  // what is seen inside the lens; null without one
+    std::shared_ptr<const Prepared> in_lens;  // what is seen inside the lens; null where it is the same
+
+    bool has_layer(uint32_t layer) const { return layer - first_layer < layer_count; }
 
     bool shows_anything() const {
         return prepared->shows_anything() || (in_lens && in_lens->shows_anything());

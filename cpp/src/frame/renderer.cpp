@@ -110,6 +110,7 @@ struct FrameState {
     std::vector<int32_t> layers;
     std::vector<float> depth;
     std::vector<double> world;
+    std::vector<float> gradients;  // x, y a pixel
 
     void read_surface();
     void read_ids();
@@ -157,9 +158,11 @@ LayerLook Renderer::look(uint32_t layer) const {
     require_layer(*scene, layer);
     LayerLook look;
     look.layer = layer;
-    return scene->passes.empty()
-               ? look
-               : scene->passes[0].prepared->look_of(layer, scene->layers[layer].rows.size());
+    const size_t features = scene->layers[layer].rows.size();
+    for (const PreparedPass& pass : scene->passes)
+        if (pass.has_layer(layer))
+            return pass.prepared->look_of(layer, features);
+    return look;
 }
 
 void Renderer::restyle(const std::vector<LayerLook>& looks) {
@@ -170,6 +173,11 @@ void Renderer::restyle(const std::vector<LayerLook>& looks) {
 void Renderer::edit(const LayerEdit& edit) {
     const auto before = state_->require_scene("edit");
     state_->change_scene(before, edited_scene(*before, edit, state_->memory));
+}
+
+void Renderer::tune(uint32_t layer, const TechniqueOptions& options) {
+    const auto before = state_->require_scene("tune");
+    state_->change_scene(before, tuned_scene(*before, layer, options));
 }
 
 void Renderer::set_lens(const Lens& lens, const std::vector<LayerLook>& looks) {
@@ -246,7 +254,7 @@ void FrameState::read_surface() {
     if (!depth.empty())
         return;
     const gl::CurrentScope current(renderer->pipeline->context());
-    renderer->pipeline_for(scene, request).draw_surface(world, depth);
+    renderer->pipeline_for(scene, request).draw_surface(world, depth, gradients);
 }
 
 void FrameState::read_ids() {
@@ -311,11 +319,13 @@ std::vector<PickedFeature> Frame::pick(int x, int y) const {
     const std::vector<double>& positions = world();
     std::vector<PickedFeature> picked;
     const PreparedScene& scene = *state_->scene;
-    const double map_x = positions[3 * pixel], map_y = positions[3 * pixel + 1];
-    const bool in_lens = scene.lens && scene.lens->contains(x + 0.5, y + 0.5, map_x, map_y);
+    const SeenPoint point{positions[3 * pixel], positions[3 * pixel + 1], state_->gradients[2 * pixel],
+                          state_->gradients[2 * pixel + 1], basis_of(state_->request.camera).forward.z};
+    const bool in_lens = scene.lens && scene.lens->contains(x + 0.5, y + 0.5, point.x, point.y);
     for (size_t pass = scene.passes.size(); pass-- > 0;) {
-        const Prepared& seen = in_lens ? *scene.passes[pass].in_lens : *scene.passes[pass].prepared;
-        for (const FeatureReference& reference : seen.query(map_x, map_y))
+        const PreparedPass& each = scene.passes[pass];
+        const Prepared& seen = in_lens && each.in_lens ? *each.in_lens : *each.prepared;
+        for (const FeatureReference& reference : seen.query(point))
             picked.push_back({static_cast<int32_t>(reference.layer), scene.row_of(reference)});
     }
     return picked;

@@ -1,6 +1,7 @@
 #include "frame/scene_changes.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -17,11 +18,22 @@ void require_layers(const PreparedScene& scene, Span<const LayerLook> looks) {
     }
 }
 
-// Errors of a technique do not know the layer's name.
-std::shared_ptr<const Prepared> restyled(const PreparedScene& scene, const Prepared& prepared,
-                                         Span<const LayerLook> looks, const MemoryAccount& memory) {
+// The looks of a pass's own layers.
+std::vector<LayerLook> looks_of(const PreparedPass& pass, Span<const LayerLook> looks) {
+    std::vector<LayerLook> own;
+    std::copy_if(looks.begin(), looks.end(), std::back_inserter(own),
+                 [&](const LayerLook& look) { return pass.has_layer(look.layer); });
+    return own;
+}
+
+// What a pass is with other looks; null where none are its own. Errors of a technique do not know the layer's name.
+std::shared_ptr<const Prepared> restyled(const PreparedScene& scene, const PreparedPass& pass,
+                                         Span<const LayerLook> all_looks, const MemoryAccount& memory) {
+    const std::vector<LayerLook> looks = looks_of(pass, all_looks);
+    if (looks.empty())
+        return nullptr;
     try {
-        return prepared.restyled(looks, memory);
+        return pass.prepared->restyled(looks, memory);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::style || looks.size() != 1)
             throw;
@@ -47,7 +59,7 @@ void append(const LayerEdit& edit, size_t features, LayerLook& look) {
 
 void look_through_lens(PreparedScene& scene, const MemoryAccount& memory) {
     for (PreparedPass& pass : scene.passes)
-        pass.in_lens = scene.lens ? restyled(scene, *pass.prepared, scene.lens_looks, memory) : nullptr;
+        pass.in_lens = scene.lens ? restyled(scene, pass, scene.lens_looks, memory) : nullptr;
 }
 
 }  // namespace
@@ -64,7 +76,8 @@ std::shared_ptr<const PreparedScene> restyled_scene(const PreparedScene& scene, 
     auto changed = std::make_shared<PreparedScene>(scene);
     changed->fingerprint = SceneFingerprint(Digest{});
     for (PreparedPass& pass : changed->passes)
-        pass.prepared = restyled(scene, *pass.prepared, looks, memory);
+        if (auto prepared = restyled(scene, pass, looks, memory))
+            pass.prepared = std::move(prepared);
     look_through_lens(*changed, memory);
     return changed;
 }
@@ -74,13 +87,15 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
     require_layer(scene, edit.layer);
     const PreparedLayer& layer = scene.layers[edit.layer];
     validate(edit, layer.kind, layer.rows.size(), layer.name);
-    if (scene.passes.empty())
-        throw Error(ErrorKind::unsupported,
-                    "a scene without features has no index to edit; prepare it anew with the first of them");
     auto changed = std::make_shared<PreparedScene>(scene);
+    const auto pass = std::find_if(changed->passes.begin(), changed->passes.end(),
+                                   [&](const PreparedPass& each) { return each.has_layer(edit.layer); });
+    if (pass == changed->passes.end())
+        throw Error(ErrorKind::unsupported,
+                    "layers without features have no index to edit; prepare the scene anew with the first of "
+                    "them");
     changed->fingerprint = SceneFingerprint(Digest{});
-    for (PreparedPass& pass : changed->passes)
-        pass.prepared = pass.prepared->edited(edit, memory);
+    pass->prepared = pass->prepared->edited(edit, memory);
     std::vector<int64_t> rows(layer.rows.begin(), layer.rows.end());
     const Span<const int64_t> added = edit.geometry.rows.subspan(edit.replaced.size(), edit.added_count());
     rows.insert(rows.end(), added.begin(), added.end());
@@ -89,6 +104,22 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
         if (look.layer == edit.layer)
             append(edit, layer.rows.size(), look);
     look_through_lens(*changed, memory);
+    return changed;
+}
+
+std::shared_ptr<const PreparedScene> tuned_scene(const PreparedScene& scene, uint32_t layer,
+                                                 const TechniqueOptions& options) {
+    require_layer(scene, layer);
+    auto changed = std::make_shared<PreparedScene>(scene);
+    changed->fingerprint = SceneFingerprint(Digest{});
+    for (PreparedPass& pass : changed->passes) {
+        if (!pass.has_layer(layer))
+            continue;
+        pass.prepared = pass.prepared->tuned(options);
+        if (!pass.prepared)
+            throw Error(ErrorKind::unsupported, "layer '" + scene.layers[layer].name + "' is drawn by technique '" +
+                                                    pass.technique + "', which has nothing like that to change");
+    }
     return changed;
 }
 

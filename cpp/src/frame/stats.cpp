@@ -28,6 +28,7 @@ FrameStats collect_stats(Pipeline& pipeline, const PreparedScene& scene, const M
                     {"pieces", static_cast<double>(sum.pieces)},
                     {"prepared_bytes", static_cast<double>(sum.bytes)},
                     {"quantum_m", sum.quantum}};
+    stats.counts.insert(stats.counts.end(), pipeline.counts().begin(), pipeline.counts().end());
     return stats;
 }
 

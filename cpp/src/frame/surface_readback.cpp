@@ -49,11 +49,12 @@ private:
 
 void unpack_surface(const std::vector<uint32_t>& positions, const std::vector<float>& surfaces,
                     const PictureRequest& request, const PositionGrid& grid, double base_depth,
-                    std::vector<double>& world, std::vector<float>& depth) {
+                    std::vector<double>& world, std::vector<float>& depth, std::vector<float>& gradients) {
     const size_t pixels = positions.size() / 4;
     const RayHeights heights(request.camera, request.width, request.height);
     world.assign(3 * pixels, std::numeric_limits<double>::quiet_NaN());
     depth.assign(pixels, std::numeric_limits<float>::infinity());
+    gradients.assign(2 * pixels, 0.0F);
     for (size_t i = 0; i < pixels; ++i) {
         if (positions[4 * i] == sky_block)
             continue;
@@ -61,6 +62,8 @@ void unpack_surface(const std::vector<uint32_t>& positions, const std::vector<fl
         const auto row = static_cast<int>(i / static_cast<size_t>(request.width));
         const double exact = base_depth + static_cast<double>(surfaces[4 * i + 2]);
         depth[i] = static_cast<float>(exact);
+        gradients[2 * i] = surfaces[4 * i];
+        gradients[2 * i + 1] = surfaces[4 * i + 1];
         world[3 * i] = map_coordinate(positions[4 * i], positions[4 * i + 2], grid.origin_x, grid.block_size);
         world[3 * i + 1] =
             map_coordinate(positions[4 * i + 1], positions[4 * i + 3], grid.origin_y, grid.block_size);

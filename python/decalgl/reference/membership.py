@@ -15,12 +15,13 @@ import numpy as np
 from .decals import FillDecals, StrokeDecals, decals_of
 from .fills import Edges, hatch_clearance, inside_polygons
 from .points import strips
-from .strokes import Slopes, StyledStroke, styled_strokes
+from .screen import touching_on_screen
+from .strokes import Slopes, StyledStroke, Touch, styled_strokes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike
+    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike, StrokeLike
     from .points import Strip
 
 
@@ -139,7 +140,8 @@ class _Finder:
         keys, tints = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
         gauges = [np.empty(0)]
         for stroke, first in zip(self.strokes, self.bands_at[1:], strict=True):
-            key, share, gauge = covered_pairs(stroke, points, slopes)
+            touches = _touching(self.decals.stroke, stroke, points, slopes)
+            key, share, gauge = covered_pairs(touches, count)
             keys.append(key)
             gauges.append(gauge)
             feature, bands = key // count, stroke.style.bands
@@ -167,14 +169,22 @@ class _Finder:
         return chosen
 
 
-def covered_pairs(
-    stroke: StyledStroke, points: Strip, slopes: Slopes | None
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Of points that strokes cover, ascending keys feature * n + point; gauge over half width, and gauge, of each."""
+def _touching(
+    stroke: StrokeLike, styled: StyledStroke, points: Strip, slopes: Slopes | None
+) -> Iterator[Touch]:
+    if not stroke.follows_view:
+        return styled.touching(points, slopes)
+    if slopes is None or slopes.planes is None:
+        raise ValueError("Widths on the screen need the planes that points are seen on; see `slopes_of`.")
+    return touching_on_screen(styled, stroke, points, slopes.planes)
+
+
+def covered_pairs(touches: Iterable[Touch], count: int) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Of points that strokes cover, ascending keys feature * count + point; gauge over half width, and gauge, of each."""
     keys, shares, gauges = [np.empty(0, dtype=np.int64)], [np.empty(0)], [np.empty(0)]
-    for touch in stroke.touching(points, slopes):
+    for touch in touches:
         kept = np.flatnonzero(touch.clearance >= 0.0)
-        keys.append(touch.feature[kept] * len(points.index) + touch.point[kept])
+        keys.append(touch.feature[kept] * count + touch.point[kept])
         gauges.append(touch.gauge[kept])
         shares.append(touch.gauge[kept] / touch.half_width[kept])
     key, share, gauge = np.concatenate(keys), np.concatenate(shares), np.concatenate(gauges)

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .decals import follows_slopes
+from .decals import follows_slopes, follows_view
 from .edges import edge_distance
 from .membership import Membership, membership
 from .rays import RayCaster, Surface, Viewpoint, pixel_centres, raycast, viewpoint
+from .screen import screen_planes
 from .strokes import Slopes
 
 if TYPE_CHECKING:
@@ -98,13 +99,18 @@ def render_ids(
 
 
 def slopes_of(scene: SceneLike, camera: CameraLike, size: Size, surface: Surface) -> Slopes | None:
-    """What slope correction needs at the positions of a surface, flattened; None where no style asks for it."""
+    """What slope correction and widths on the screen need at the positions of a surface, flattened; None where no style asks for it."""
     if not follows_slopes(scene):
         return None
-    gradient = surface.gradient.reshape(-1, 2)
-    if np.isnan(gradient[np.isfinite(surface.world.reshape(-1, 3)[:, 0])]).any():
-        raise ValueError("The surface has no gradients, and the scene has strokes with slope correction.")
-    return Slopes(gradient, viewpoint(camera, size).forward)
+    gradient, world = surface.gradient.reshape(-1, 2), surface.world.reshape(-1, 3)
+    if np.isnan(gradient[np.isfinite(world[:, 0])]).any():
+        raise ValueError("The surface has no gradients, and the scene has strokes that depend on slopes.")
+    return _slopes(scene, viewpoint(camera, size), world, gradient)
+
+
+def _slopes(scene: SceneLike, view: Viewpoint, world: FloatArray, gradient: FloatArray) -> Slopes:
+    planes = screen_planes(view, world, gradient) if follows_view(scene) else None
+    return Slopes(gradient, view.forward, planes)
 
 
 def composite(
@@ -214,7 +220,7 @@ def _filter_band(
         gradients = np.repeat(gradients, samples * samples, axis=0)
         # Where the centre sees sky, each place has its own.
         gradients = np.where(np.isnan(gradients), seen.gradient.reshape(-1, 2), gradients)
-        slopes = Slopes(gradients, view.forward)
+        slopes = _slopes(scene, view, seen.world.reshape(-1, 3), gradients)
     colors = composite(scene, seen.world[..., :2].reshape(-1, 2), slopes, nearest)
     colors = colors.reshape(height, width, samples * samples, 4)
     varied = (colors != colors[:, :, :1]).any(axis=(2, 3))

@@ -14,13 +14,16 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "decalgl/core/memory.h"
 #include "decalgl/core/position_grid.h"
 #include "decalgl/core/progress.h"
+#include "decalgl/core/timing.h"
 #include "decalgl/vector/decal.h"
 #include "decalgl/vector/layer.h"
 #include "decalgl/vector/layer_edit.h"
@@ -28,6 +31,7 @@
 
 namespace decalgl::gl {
 class Framebuffer;
+class Program;
 class ProgramLibrary;
 class Texture2D;
 }  // namespace decalgl::gl
@@ -36,6 +40,8 @@ namespace decalgl {
 
 class ArchiveReader;
 class ArchiveWriter;
+class Heightfield;
+struct ViewBlock;
 
 // How the structures of Zechmeister and Thöny are built and drawn; other techniques take no notice.
 enum class SegmentOrder { importance, hilbert };  // in a cell: in draw order, or along a Hilbert curve
@@ -51,11 +57,12 @@ struct BvhOptions {
     PassGrouping passes = PassGrouping::layer;
 };
 
-// What a technique is given to prepare: a run of neighbouring layers of one scene.
+// What a technique is given to prepare: a run of neighbouring layers of one scene, with equal TechniqueChoice.
 struct TechniqueInput {
     Span<const Layer> layers;
-    uint32_t first_layer = 0;  // place of layers[0] in the scene
-    Bounds bounds;             // of the terrain: nothing outside is ever seen
+    const Heightfield* terrain = nullptr;  // as it is drawn, and as long as what is prepared
+    uint32_t first_layer = 0;              // place of layers[0] in the scene
+    Bounds bounds;                         // of the terrain: nothing outside is ever seen
     PositionGrid positions;
     unsigned threads = 0;  // 0: all cores
     MemoryAccount memory;
@@ -70,14 +77,23 @@ struct PreparedCounts {
     double quantum = 0.0;  // metres: how far a vertex may have moved
 };
 
+// A place on the terrain as a pixel sees it, on the plane of the triangle there.
+struct SeenPoint {
+    double x = 0.0;  // on the map, in the scene's coordinates
+    double y = 0.0;
+    double gradient_x = 0.0;  // metres of height a metre on the map
+    double gradient_y = 0.0;
+    double forward_z = -1.0;  // of the camera's unit view direction
+};
+
 class Prepared {
 public:
     virtual ~Prepared() = default;
     virtual PreparedCounts counts() const = 0;
     // The feature behind an id that draw_ids wrote, less one.
     virtual FeatureReference feature(uint32_t id) const = 0;
-    // Every feature at a map position in the scene's coordinates, topmost first.
-    virtual std::vector<FeatureReference> query(double x, double y) const = 0;
+    // Every feature at a place, topmost first.
+    virtual std::vector<FeatureReference> query(const SeenPoint& point) const = 0;
     // Adds what Technique::open needs, in sections whose names begin with `prefix`. They may point into this
     // object, which outlives the writing.
     virtual void save(ArchiveWriter& archive, const std::string& prefix) const = 0;
@@ -85,8 +101,8 @@ public:
     virtual bool shows_anything() const = 0;
     // How a layer of so many features looks: all its colours and widths, of features without a decal 0.
     virtual LayerLook look_of(uint32_t layer, size_t features) const = 0;
-    // The same features with other looks: a new index that shares whatever stays. Throws Error(style) for what
-    // needs preparing anew, Error(unsupported) where the technique cannot.
+    // The same features with other looks, of layers that it holds: a new index that shares whatever stays. Throws
+    // Error(style) for what needs preparing anew, Error(unsupported) where the technique cannot.
     virtual std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                                      const MemoryAccount& memory) const = 0;
     // With features added, removed or replaced: a new index that shares whatever lies elsewhere. Throws
@@ -94,6 +110,9 @@ public:
     // Error(style), Error(memory).
     virtual std::shared_ptr<const Prepared> edited(const LayerEdit& edit,
                                                    const MemoryAccount& memory) const = 0;
+    // With other choices, as far as they need no preparing: the rest of them is not looked at. Null where the technique
+    // has none.
+    virtual std::shared_ptr<const Prepared> tuned(const TechniqueOptions&) const { return nullptr; }
 };
 
 // What a pixel shows of the picture.
@@ -115,17 +134,32 @@ struct View {
     PositionGrid positions;
     Antialias antialias = Antialias::none;  // none or coverage: the others are made of pictures without
     double widest_pixel = 0.0;              // metres that the farthest pixel is wide, seen head-on
+    double terrain_error = 0.0;             // pixels that the terrain's level of detail may be off
     CoverageRule coverage = CoverageRule::exact;
+    const ViewBlock* block = nullptr;  // what the uniform block holds
+    TimingLog* timings = nullptr;      // for passes of a technique's own; may be null
+    // Whether the framebuffer holds what other techniques drew below: to be laid over. Else all of it is written.
+    bool has_below = false;
+};
+
+// The terrain on the GPU. heights: R32F, metres at each sample (column, row), holes below -1e30.
+struct TerrainView {
+    const gl::Texture2D* heights = nullptr;
+    const Heightfield* samples = nullptr;
 };
 
 // The surface seen at each pixel. position: block x, y and the bits of offset x, y
 // (shaders/shared/position.glsl). surface: terrain gradient, distance along the pixel's ray. Without coverage,
-// texels may have been gathered from anywhere in the picture: what they show follows from these two alone.
+// texels may have been gathered from anywhere in the picture: what they show follows from these two alone. depth:
+// reversed, as attached to the G-buffer.
 // `lens`: the share of each pixel that is inside the lens, and whether its centre is; null without one.
+// `set_gathered`: for programs that include shared/gathered.glsl, where texels were gathered; else empty.
 struct GBufferView {
     const gl::Texture2D* position = nullptr;
     const gl::Texture2D* surface = nullptr;
+    const gl::Texture2D* depth = nullptr;
     const gl::Texture2D* lens = nullptr;
+    std::function<void(gl::Program&)> set_gathered;
 };
 
 struct UpdateReport {
@@ -133,6 +167,7 @@ struct UpdateReport {
     uint64_t bytes = 0;         // of GL memory held by the technique
     uint64_t shader_steps = 0;  // the most a shader of this driver can take for one pixel; 0: no limit
     uint64_t longest_walk = 0;  // the most pieces that one point of a pixel has to look at
+    std::vector<std::pair<std::string, double>> counts;  // further ones, for frame.stats
 };
 
 class Technique {
@@ -149,11 +184,15 @@ public:
     // `lens`: what is seen inside the lens, `prepared` with other looks; null without one. A later call replaces
     // both, and uploads only what they do not share with those before. After an error nothing is uploaded.
     virtual void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
-                        const MemoryAccount& memory) = 0;
+                        const TerrainView& terrain, const MemoryAccount& memory) = 0;
+    // Throws Error(unsupported) for a way of anti-aliasing that it cannot do.
     virtual UpdateReport update(const View& view) = 0;
     // Whether `draw` needs a depth attachment for itself, with whatever values.
     virtual bool needs_depth(const View&) const { return false; }
-    // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture.
+    // Whether `draw` and `draw_ids` need a depth attachment with a stencil.
+    virtual bool needs_stencil(const View&) const { return false; }
+    // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture: all of it,
+    // or over what view.has_below says is there.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;
     // Writes 1 + id of the topmost feature at each pixel's centre, 0 where there is none.
     virtual void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,43 @@ enum class OutlineMode : uint8_t { normal, inset, offset };
 // Over all fills of the layer, or each over its own feature's fill.
 enum class OutlineOrder : uint8_t { layer, feature };
 
+// What one technique lets its users choose; each has its own.
+class TechniqueOptions {
+public:
+    virtual ~TechniqueOptions() = default;
+    virtual bool equals(const TechniqueOptions& other) const = 0;
+};
+
+// Who draws a layer, by a name of technique/registry.cpp.
+struct TechniqueChoice {
+    std::string name = "static";
+    std::shared_ptr<const TechniqueOptions> options;  // null: the technique's own
+
+    bool operator==(const TechniqueChoice& other) const {
+        const bool same_options =
+            options && other.options ? options->equals(*other.options) : options == other.options;
+        return name == other.name && same_options;
+    }
+};
+
+// Polygons cut into triangles, for techniques that draw meshes. Those of feature f are first_of[f] .. first_of[f + 1];
+// six coordinates each, in the scene's coordinate system, either way round. They cover what the even-odd rule says,
+// and nothing twice.
+struct Triangles {
+    std::vector<double> coordinates;
+    std::vector<int64_t> first_of;  // empty: there are none
+};
+
 struct Layer {
     std::string name;
+    TechniqueChoice technique;
     Features features;
     Fill fill;      // of polygons
     Stroke stroke;  // of lines; of polygons: their outlines
     Stroke casing;  // of lines: under the strokes of all features
     OutlineMode outline_mode = OutlineMode::normal;
     OutlineOrder outline_order = OutlineOrder::layer;
+    Triangles triangles;  // of polygons, where a technique asks for them
     // Features from bottom to top; empty: as they stand.
     std::vector<int64_t> draw_order;
 

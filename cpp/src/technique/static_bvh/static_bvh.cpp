@@ -64,7 +64,7 @@ std::unique_ptr<const Prepared> StaticBvh::preprocess(const TechniqueInput& inpu
 }
 
 void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
-                       const MemoryAccount& memory) {
+                       const TerrainView&, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const bvh::PreparedBvh>(std::move(prepared));
     buffers_.clear();
     for (const bvh::DecalGroup& group : prepared_->groups) {
@@ -112,7 +112,8 @@ UpdateReport StaticBvh::update(const View&) {
 
 void StaticBvh::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const GLfloat nothing[] = {0.0F, 0.0F, 0.0F, 0.0F};
-    glClearBufferfv(GL_COLOR, 0, nothing);
+    if (!view.has_below)
+        glClearBufferfv(GL_COLOR, 0, nothing);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     const bool in_samples =
@@ -259,6 +260,7 @@ void StaticBvh::draw_samples(const View& view, const GBufferView& gbuffer, gl::P
         glDisable(GL_DEPTH_TEST);
         glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
         glViewport(0, row, width, std::min(rows, height - row));
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         lay(sum, row, 1.0F, programs);
     }
     glDepthMask(GL_TRUE);

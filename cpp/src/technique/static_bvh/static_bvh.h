@@ -18,7 +18,7 @@ public:
     std::unique_ptr<const Prepared> open(const ArchiveReader& archive, const std::string& prefix,
                                          const MemoryAccount& memory) const override;
     void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
-                const MemoryAccount& memory) override;
+                const TerrainView&, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;

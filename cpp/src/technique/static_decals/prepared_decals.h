@@ -33,12 +33,13 @@ static_assert(sizeof(LayerRules) == 32, "saved as it is");
 class LayerSources;
 
 struct LookToken {};
+struct ShapeToken {};
 
 class PreparedDecals : public Prepared {
 public:
     PreparedCounts counts() const override;
     FeatureReference feature(uint32_t id) const override { return slots[id].feature; }
-    std::vector<FeatureReference> query(double x, double y) const override;
+    std::vector<FeatureReference> query(const SeenPoint& point) const override;
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
 
     bool shows_anything() const override { return has_shown; }
@@ -90,8 +91,10 @@ public:
     GrowingArray<uint32_t> growing_cells;  // cells and words, once edits have added to them
     GrowingArray<uint32_t> growing_words;
     uint64_t unused_words = 0;  // of lists that edits have replaced
-    // Where two indexes share it, buckets with the same entry look the same in both.
-    std::shared_ptr<const LookToken> look_token;
+    // Where two indexes share it, buckets with the same entry look the same in both; or the same decals cover the same
+    // points in both.
+    std::shared_ptr<const LookToken> look_token = std::make_shared<const LookToken>();
+    std::shared_ptr<const ShapeToken> shape_token = std::make_shared<const ShapeToken>();
 };
 
 // Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).

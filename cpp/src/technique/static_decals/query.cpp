@@ -37,13 +37,14 @@ Span<const uint32_t> PreparedDecals::list(uint32_t cell_entry) const {
     return {words.data() + first, texels < COUNT_ESCAPE ? size_t{4} * texels : words.size() - first};
 }
 
-std::vector<FeatureReference> PreparedDecals::query(double x, double y) const {
+std::vector<FeatureReference> PreparedDecals::query(const SeenPoint& point) const {
     std::vector<FeatureReference> found;
     CellPoints<double> cell;
     uint32_t entry = 0;
-    if (!locate(*this, x, y, cell, entry))
+    if (!locate(*this, point.x, point.y, cell, entry))
         return found;
-    ListReader<double>(*this, cell)
+    const Slope slope({point.gradient_x, point.gradient_y}, point.forward_z);
+    ListReader<double>(*this, cell, slope)
         .read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares) {
             const FeatureReference feature = slots[slot].feature;
             if (shares[0] <= 1.0 && styles[slot].color[3] != 0 &&
