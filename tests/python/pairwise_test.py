@@ -6,8 +6,8 @@ The rows are a pairwise covering array over `combined.FACTORS`. What each mode i
     none        so are colours, in steps of 1/255
     ssaa, msaa  the mean of the reference at the same places in the pixel; the tolerance is what these samples see when
                 they and the vertices are moved by what is rounded (`rounding.unexplained_means`)
-    coverage    the mean over the pixel's area, by 16 x 16 places, over the pixels that are partly covered
-    thoeny      the same; his estimate multiplies what meets in a pixel, and takes lines to be parallel to its sides
+    coverage    the mean over the pixel's area, by 32 x 32 places, over the pixels that are partly covered
+    thoeny      the same, by bounds that say what his estimate is worth
     fxaa        away from edges the picture without anti-aliasing, on edges no farther from the mean over the area
 
 Index "thoeny" shows the nearest line of a layer, so it is compared with the reference's nearest.
@@ -42,15 +42,19 @@ class Bounds(NamedTuple):
     leak: float
 
 
-EXACT = Bounds(0.03, 0.09, 0.02)
+EXACT = Bounds(0.015, 0.05, 0.02)
+# No goal, but what Thöny's estimate is worth against the truth: it has no corners, and multiplies what meets in a
+# pixel. That lines cover by his formula is tested in thoeny_coverage_test.py.
 ESTIMATED = Bounds(0.09, 0.4, 0.1)
+# The same where lines cross, and the one that is nearest to the centre takes all of the pixel.
+NEAREST = Bounds(0.12, 0.6, 0.1)
 COVERAGE = {
     ("grid", "coverage"): EXACT,
     ("bvh", "coverage"): EXACT,
     ("thoeny", "coverage"): EXACT,
     ("grid", "thoeny"): ESTIMATED,
     ("bvh", "thoeny"): ESTIMATED,
-    ("thoeny", "thoeny"): ESTIMATED,
+    ("thoeny", "thoeny"): NEAREST,
 }
 # Metres that rounding moves a vertex or a position, in quanta: half of one, twice where a cell's border cuts an edge,
 # and as much again for what the shaders compute in 32 bits.
@@ -61,7 +65,7 @@ STEPS = {"grid": 1.1, "bvh": 2.1, "thoeny": 2.1}
 MEAN_STEPS = {index: steps + 0.5 for index, steps in STEPS.items()}
 # Pixels that rounding explains, of all.
 ROUNDED = 0.01
-CROP, SAMPLES = (64, 48), 16
+CROP, SAMPLES = (32, 24), 32
 # Four samples in a pixel, to the right and down from its corner: rows 2, 0, 3, 1 from below, column by column.
 PLACES = np.array([(0.125, 0.375), (0.375, 0.875), (0.625, 0.125), (0.875, 0.625)])
 
@@ -192,7 +196,7 @@ def test_coverage_is_the_mean_over_the_pixel(number: int) -> None:
     got = overlay_of(number)[crop[1] : crop[3], crop[0] : crop[2]]
     found = ref.compare_overlay(got, expected, ignore=ignored)
     bounds = COVERAGE[ROWS[number]["index"], ROWS[number]["antialias"]]
-    assert found.partial >= 100
+    assert found.partial >= 50
     assert found.rms <= bounds.rms, found
     assert found.p99 <= bounds.p99, found
     assert found.leak <= bounds.leak, found
@@ -211,7 +215,7 @@ def test_fxaa_smooths_edges_alone(number: int) -> None:
     np.testing.assert_array_equal(soft[even], hard[even])
     (x0, y0, x1, y1), expected, ignored = truth(number)
     edges = expected.varied & ~ignored
-    assert edges.sum() >= 100
+    assert edges.sum() >= 50
     rms = [
         np.sqrt(((one[y0:y1, x0:x1, :3] / 255 - expected.rgba[..., :3])[edges] ** 2).mean())
         for one in (hard, soft)

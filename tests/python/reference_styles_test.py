@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -420,3 +421,35 @@ def test_samples_agree_with_areas_of_styles(corner: str) -> None:
     partial = (exact > 0) & (exact < 1)
     assert partial.sum() > 20
     assert np.sqrt(np.mean((exact - sampled)[partial] ** 2)) < 0.012
+
+
+def test_of_strokes_the_nearest_alone_holds_a_point() -> None:
+    lines = [[[(-9, 0), (9, 0)]], [[(-9, 1), (9, 1)]], [[(-9, 3), (9, 3)]]]
+    layer = make_layer("lines", lines, width=[4.0, 4.0, 0.2])
+    points = np.array([(0, 0.2), (0, 0.8), (0, 0.5), (0, 2.5), (0, 3.05), (0, -2.1), (0, -1.9)])
+    # On a tie the topmost; the third is nearer to (0, 2.5), but does not reach it.
+    expected = [0, 1, 1, 1, 2, -1, 0]
+    assert ref.membership(layer, points, nearest=True).topmost().tolist() == expected
+    assert ref.membership(layer, points).topmost().tolist() == [1, 1, 1, 1, 2, -1, 0]
+    nearest = ref.membership(layer, points, nearest=True)
+    assert np.diff(nearest.offsets).tolist() == [1, 1, 1, 1, 1, 0, 1]
+
+
+def test_casings_and_fills_are_apart_from_the_nearest_stroke() -> None:
+    lines = [[[(-9, 0), (9, 0)]], [[(-9, 3), (9, 3)]]]
+    layer = make_layer("lines", lines, width=2.0)
+    layer.casing = Stroke(np.full((2, 4), 255, dtype=np.uint8), np.array([6.0, 6.0]), (Style(),))
+    points = np.array([(0, 0.5), (0, 1.2), (0, 1.9)])
+    held = ref.membership(layer, points, nearest=True)
+    # The stroke of the first over its casing, and between both strokes the nearer casing.
+    assert np.diff(held.offsets).tolist() == [2, 1, 1]
+    assert held.topmost().tolist() == [0, 0, 1]
+    rings = make_layer("polygons", [[square(-4, -4, 8)], [square(-3, -3, 8)]], width=2.0)
+    inner = np.array([(4.6, 0.0), (3.6, 0.0)])
+    # Fills lie over each other below the nearest outline.
+    assert ref.membership(rings, inner, nearest=True).topmost().tolist() == [1, 0]
+    assert np.diff(ref.membership(rings, inner, nearest=True).offsets).tolist() == [2, 3]
+    for change in ({"outline_order": "feature"}, {"outline_mode": "inset"}):
+        cut = replace(rings, **change)
+        ordered, nearest = (ref.membership(cut, inner, nearest=wanted) for wanted in (False, True))
+        assert nearest.features.tolist() == ordered.features.tolist()

@@ -1,4 +1,4 @@
-"""What rounding explains of a picture of styles, and what its 32 places in a pixel should have seen.
+"""What rounding explains of a picture of styles.
 
 A dash's end, a corner of a short segment and a mitre's tip move farther than the vertices do, and farther than any
 distance to an edge tells. So wrong pixels are looked at again with vertices and positions moved: a renderer that
@@ -8,8 +8,6 @@ rounds them is right if some way to move them gives its answer.
 from __future__ import annotations
 
 import dataclasses
-import re
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,11 +15,12 @@ from PIL import Image
 
 import decalgl as dg
 from decalgl import reference as ref
-from judge import SNAP, centres_of, draw, overlay_of, own_surface, sides, surface_below
+from judge import SNAP, centres_of, draw, overlay_of, own_surface, surface_below
 from shapes import with_features
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
     IntArray = NDArray[np.int64]
     Crop = tuple[int, int, int, int]
 
-SHADERS = Path(__file__).resolve().parents[2] / "cpp" / "shaders"
 # Ways to round a scene that may explain a pixel.
 TRIES = 48
 
@@ -171,34 +169,6 @@ def composite_of(view: View, scene: dg.Scene, surface: ref.Surface, nearest: boo
     """The reference's colours (n, 4) of a scene at positions (n,) of the view."""
     slopes = ref.slopes_of(scene, view.camera, view.size, surface)
     return ref.composite(scene, surface.world[..., :2].reshape(-1, 2), slopes, nearest)
-
-
-def sample_offsets() -> FloatArray:
-    """Where in a pixel antialias="coverage" looks (samples, 2), to the right and up from the centre."""
-    text = (SHADERS / "shared" / "sample_offsets.h").read_text(encoding="utf-8")
-    pairs = re.findall(r"vec2\(([-.\d]+), ([-.\d]+)\)", text)
-    return np.array(pairs, dtype=np.float64)
-
-
-def coverage_of_samples(
-    view: View, frame: dg.Frame, crop: Crop, moved: tuple[float, float] = (0.0, 0.0)
-) -> FloatArray:
-    """The reference's mean colour (h, w, 4) of the places where antialias="coverage" looks, on the pixels' planes.
-
-    moved: by how many metres, as rounding may move the map.
-
-    What differs from it is a wrong answer at some place, whereas the mean over the whole area differs from it by what
-    so few places can tell.
-    """
-    x0, y0, x1, y1 = crop
-    surface = own_surface(view, frame)[y0:y1, x0:x1].reshape(-1)
-    right, down = sides(view, ref.pixel_centres(crop), surface)
-    total = np.zeros((len(surface.depth), 4))
-    offsets = sample_offsets()
-    for x, y in offsets:
-        there = dataclasses.replace(surface, world=surface.world + x * right - y * down + (*moved, 0.0))
-        total += composite_of(view, view.scene, there)
-    return (total / len(offsets)).reshape(y1 - y0, x1 - x0, 4)
 
 
 def write_pictures(

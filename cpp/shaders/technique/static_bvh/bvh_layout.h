@@ -70,6 +70,6 @@
 #define LOOK_COUNT_MASK 255u
 
 // In a pixel that a border passes through (sample_place.glsl).
-#define BORDER_SAMPLES 48
+#define BORDER_SAMPLES 64
 
 #endif

@@ -7,8 +7,12 @@
 #include "technique/static_bvh/stroke_borders.glsl"
 #endif
 
-// A pixel of more cells is taken to have some.
-const int most_cells_searched = 16;
+// A pixel of more cells is not searched, and taken to have some.
+const int most_cells = 2048;
+// Objects and cells that are looked at: until one is found, and at the least where a nearer one may follow. Of very many
+// borders none is worth a long search, as samples that follow any of them see the others as well.
+const int most_steps = 4096;
+const int least_steps = 256;
 
 // What the fills that cover all of the pixel's part in a cell add up to: equal in all parts where no border is between.
 uint signature_of(uint slot) {
@@ -76,26 +80,30 @@ Borders find_borders(ivec2 point, mat2 foot) {
     bool cut_by_grid = any(lessThan(search.box.xy, grid_box.xy)) || any(greaterThan(search.box.zw, grid_box.zw));
 #endif
     ivec2 cells = search.high - search.low + 1;
-    if (cells.x * cells.y > most_cells_searched) {
-        borders.ratio = 1.0;
+    if (cells.x * cells.y > most_cells) {
+        add_unknown(borders);
         return borders;
     }
     uint first_signature = 0u;
     uint signature = 0u;
     bool is_first = true, ended = false;
+    int steps = 0;
     do {
         ivec2 corner = grid_box.xy + search.place * cell_size;
         ivec4 part = ivec4(max(search.box.xy, corner), min(search.box.zw, corner + cell_size - 1));
         int object = next_in_cell(search);
         if (object >= 0) {
             add_object(borders, signature, object, point, part, foot);
-        } else {
+        } else if (search.node == 0u) {
             if (is_first) first_signature = signature;
             is_first = false;
             if (signature != first_signature || (cut_by_grid && signature != 0u)) add_unknown(borders);
             signature = 0u;
             ended = !next_cell(search);
         }
-    } while (!ended);
+        ++steps;
+    } while (!ended && steps < (borders.ratio < 1.0 ? least_steps : most_steps));
+    // Mesa's software rasteriser ends all loops after 65,535 turns of them; then too there may be more.
+    if (!ended) add_unknown(borders);
     return borders;
 }

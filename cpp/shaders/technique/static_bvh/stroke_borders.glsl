@@ -30,10 +30,16 @@ void add_end(inout Borders borders, Run run, Look look, bool start, vec2 from, f
         add_line(borders, normalize(bend), dot(from, normalize(bend)) - width * 0.5 * length(incoming + outgoing), foot);
 }
 
+// Across a segment, to the side that the pixel is on.
+vec2 sideways(Run run) {
+    vec2 left = vec2(-run.direction.y, run.direction.x);
+    return dot(run.from_start, left) < 0.0 ? -left : left;
+}
+
 #ifdef PATTERNS
 // The ends and the sides of marks; whichever of them are near in the period.
 void add_marks(inout Borders borders, Run run, Look look, int place, float half_width, mat2 foot) {
-    vec2 sideways = vec2(-run.direction.y, run.direction.x) * (dot(run.from_start, vec2(-run.direction.y, run.direction.x)) < 0.0 ? -1.0 : 1.0);
+    vec2 normal = sideways(run);
     float phase = pattern_phase(run.phases.x + run.along, look.period);
     float reach = half_extent(run.direction * foot) / run.stretch;
     for (int i = 1; i <= look.marks; ++i) {
@@ -46,7 +52,7 @@ void add_marks(inout Borders borders, Run run, Look look, int place, float half_
             float rise = half_width * (mark.w - mark.z) / ((mark.y - mark.x) * run.stretch);
             float width = half_width * mark_width(mark, clamp(at, mark.x, mark.y));
             float steepness = sqrt(1.0 + rise * rise);
-            add_line(borders, (sideways - rise * run.direction) / steepness, (run.across - width) / steepness, foot);
+            add_line(borders, (normal - rise * run.direction) / steepness, (run.across - width) / steepness, foot);
         }
     }
 }
@@ -73,7 +79,7 @@ Stroke add_stroke(inout Borders borders, int object, ivec2 point, mat2 foot) {
     Stroke stroke = Stroke(slot, half_width > 0.0 && (near_bar || near_dot));
     if (!stroke.shows) return stroke;
     if (run.is_dot && look.cap == square_cap) add_unknown(borders);
-    vec2 normal = vec2(-run.direction.y, run.direction.x) * (dot(run.from_start, vec2(-run.direction.y, run.direction.x)) < 0.0 ? -1.0 : 1.0);
+    vec2 normal = sideways(run);
     for (int i = 0; i < max(look.bands, 1); ++i) {
         float width = half_width;
         if (look.bands > 0) width *= uintBitsToFloat(texelFetch(bvh_looks, place + 1 + look.marks + i).r);

@@ -54,7 +54,8 @@ Nearest nearer(Nearest best, Group group) {
         float share = corner_share(group.style, from, group.pen_before.came, goes);
         reach = min(reach, share == not_covered ? out_of_reach : share * group.style.half_width);
     }
-    if (reach >= best.reach) return best;
+    // A point where the pen is put down has no direction, and the edge from there is as near.
+    if (run > 0.0 ? reach > best.reach : reach >= best.reach) return best;
     float along_map = run > 0.0 ? inside / run * group.run : 0.0;
     return Nearest(reach, run > 0.0 ? goes / run : best.along,
                    group.pen_before.periods + along_map * group.style.periods_per_unit);

@@ -15,6 +15,8 @@ using bvh::GroupKind;
 
 // Less than the depth of any pixel with a border (static_bvh.frag.glsl), and more than that of those without.
 constexpr double between_depth = 0.005;
+// Mesa's software rasteriser ends the loops of one shader run after 65,535 turns in all.
+constexpr uint64_t most_turns = 65535;
 // Samples are drawn in strips of the picture, so that all that is kept of a strip is no more than this many pixels.
 constexpr int pixels_at_once = 1 << 20;
 
@@ -201,11 +203,11 @@ void StaticBvh::draw_runs(const std::vector<Run>& runs, const gl::Flags& flags, 
 }
 
 // All groups for one sample of each pixel, over each other; then the next. So the mean is that of the composite, also
-// where edges of several groups meet. A single group takes all its samples at once.
+// where edges of several groups meet. A single group takes all its samples at once, unless its walks are very long.
 void StaticBvh::add_samples(const Canvas& sum, const Canvas& sample, const std::vector<Run>& runs,
                             Strip strip, const View& view, const GBufferView& gbuffer,
                             gl::ProgramLibrary& programs) {
-    if (buffers_.size() == 1) {
+    if (buffers_.size() == 1 && prepared_->longest_walk * BORDER_SAMPLES < most_turns) {
         strip.end_sample = BORDER_SAMPLES;
         draw_runs(runs, {"SAMPLES"}, strip, view, gbuffer, programs);
         return;
