@@ -6,6 +6,7 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/frame/scene.h"
+#include "decalgl/technique/dynamic_options.h"
 #include "decalgl/technique/volume_options.h"
 #include "decalgl/vector/layer_edit.h"
 #include "register.h"
@@ -106,6 +107,16 @@ LayerEdit make_edit(uint32_t layer, bool polygons, const Array<uint32_t>& remove
     return edit;
 }
 
+std::shared_ptr<DynamicOptions> make_dynamic_options(const std::string& method, const std::string& width_rule,
+                                                     double cell) {
+    auto options = std::make_shared<DynamicOptions>();
+    if (method != "auto")
+        options->method = method == "lists" ? LineMethod::lists : LineMethod::bins;
+    options->width_rule = width_rule == "thesis" ? LineWidthRule::thesis : LineWidthRule::screen;
+    options->cell = cell;
+    return options;
+}
+
 }  // namespace
 
 void register_scene(py::module_& module) {
@@ -129,8 +140,8 @@ void register_scene(py::module_& module) {
         .def_readwrite("casing", &LayerEdit::casing);
 
     py::class_<TechniqueOptions, std::shared_ptr<TechniqueOptions>>(module, "TechniqueOptions");
-    py::class_<volume::VolumeOptions, TechniqueOptions, std::shared_ptr<volume::VolumeOptions>>(module,
-                                                                                                "VolumeOptions")
+    py::class_<volume::VolumeOptions, TechniqueOptions, std::shared_ptr<volume::VolumeOptions>>(
+        module, "VolumeOptions")
         .def(py::init([](bool exact, double arc_step) {
                  volume::VolumeOptions options;
                  options.grouping = exact ? volume::Grouping::exact : volume::Grouping::colors;
@@ -138,6 +149,8 @@ void register_scene(py::module_& module) {
                  return options;
              }),
              py::arg("exact"), py::arg("arc_step"));
+    py::class_<DynamicOptions, TechniqueOptions, std::shared_ptr<DynamicOptions>>(module, "DynamicOptions")
+        .def(py::init(&make_dynamic_options), py::arg("method"), py::arg("width_rule"), py::arg("cell"));
 
     py::class_<Scene>(module, "Scene")
         .def(py::init([](const Array<float>& heights, double x0, double y0, double dx, double dy,

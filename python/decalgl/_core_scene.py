@@ -73,6 +73,9 @@ def _core_stroke(given: Stroke | None) -> _core.Stroke:
     stroke.widths = given.widths
     stroke.styles = [_core_style(style) for style in given.styles]
     stroke.widest = given.widest
+    stroke.in_pixels = given.units == "px"
+    limits = given.limits
+    stroke.limits = (limits.least_px, limits.most_px, limits.least_metres, limits.most_metres)
     if given.style_of is not None:
         stroke.style_of = given.style_of
     return stroke

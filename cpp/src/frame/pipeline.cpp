@@ -142,11 +142,11 @@ void Pipeline::set_view() {
              scene_->positions,
              request.antialias == Antialias::coverage ? Antialias::coverage : Antialias::none,
              widest_pixel(tiles_, scene_->terrain, request.camera, request.height),
+             request.terrain_error,
              options_.coverage,
              &view_block_,
              &timings_,
-             false,
-             request.terrain_error};
+             false};
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     write_view_block();
@@ -245,10 +245,12 @@ bool Pipeline::has_lens() const {
 // The G-buffer with the mask of the lens, drawn for the piece that it holds.
 GBufferView Pipeline::look_through_lens(const SeenTargets& seen) {
     GBufferView view = seen.gbuffer.view();
+    const bool is_gathered = &seen != &targets_->seen;
+    if (is_gathered)
+        view.set_gathered = [this](gl::Program& program) { silhouettes_->set_gathered(program); };
     if (!has_lens())
         return view;
     const gl::PassTimer timer(&timings_, "lens");
-    const bool is_gathered = &seen != &targets_->seen;
     LensMask& mask = is_gathered ? gathered_lens_mask_ : lens_mask_;
     mask.draw(scene_->lens, request_, scene_->positions, seen.gbuffer,
               is_gathered ? silhouettes_.get() : nullptr, programs_, memory_);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -30,6 +31,7 @@
 
 namespace decalgl::gl {
 class Framebuffer;
+class Program;
 class ProgramLibrary;
 class Texture2D;
 }  // namespace decalgl::gl
@@ -108,6 +110,9 @@ public:
     // Error(style), Error(memory).
     virtual std::shared_ptr<const Prepared> edited(const LayerEdit& edit,
                                                    const MemoryAccount& memory) const = 0;
+    // With other choices, as far as they need no preparing: the rest of them is not looked at. Null where the technique
+    // has none.
+    virtual std::shared_ptr<const Prepared> tuned(const TechniqueOptions&) const { return nullptr; }
 };
 
 // What a pixel shows of the picture.
@@ -129,12 +134,12 @@ struct View {
     PositionGrid positions;
     Antialias antialias = Antialias::none;  // none or coverage: the others are made of pictures without
     double widest_pixel = 0.0;              // metres that the farthest pixel is wide, seen head-on
+    double terrain_error = 0.0;             // pixels that the terrain's level of detail may be off
     CoverageRule coverage = CoverageRule::exact;
     const ViewBlock* block = nullptr;  // what the uniform block holds
     TimingLog* timings = nullptr;      // for passes of a technique's own; may be null
     // Whether the framebuffer holds what other techniques drew below: to be laid over. Else all of it is written.
     bool has_below = false;
-    double terrain_error = 0.0;  // pixels that the terrain's level of detail may be off
 };
 
 // The terrain on the GPU. heights: R32F, metres at each sample (column, row), holes below -1e30.
@@ -148,11 +153,13 @@ struct TerrainView {
 // texels may have been gathered from anywhere in the picture: what they show follows from these two alone. depth:
 // reversed, as attached to the G-buffer.
 // `lens`: the share of each pixel that is inside the lens, and whether its centre is; null without one.
+// `set_gathered`: for programs that include shared/gathered.glsl, where texels were gathered; else empty.
 struct GBufferView {
     const gl::Texture2D* position = nullptr;
     const gl::Texture2D* surface = nullptr;
     const gl::Texture2D* depth = nullptr;
     const gl::Texture2D* lens = nullptr;
+    std::function<void(gl::Program&)> set_gathered;
 };
 
 struct UpdateReport {
