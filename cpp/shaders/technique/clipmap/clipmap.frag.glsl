@@ -26,10 +26,12 @@ vec4 color_at(ivec2 texel, vec2 fraction, int detail) {
         int shift = finest_level - level;
         own = texel >> shift;
         rest = (vec2(texel & ((1 << shift) - 1)) + fraction) / float(1 << shift);
-        // Both tiles that linear filtering reads from.
-        ivec2 low = own + ivec2(floor(rest - 0.5));
+        // All tiles that linear filtering reads from.
         ivec2 limit = ivec2((1 << (level + tile_bits)) - 1);
-        found = level == 0 || (is_there(clamp(low, ivec2(0), limit), level) && is_there(clamp(low + 1, ivec2(0), limit), level));
+        ivec2 low = clamp(own + ivec2(floor(rest - 0.5)), ivec2(0), limit);
+        ivec2 high = min(low + 1, limit);
+        found = level == 0 || (is_there(low, level) && is_there(high, level) &&
+                               is_there(ivec2(low.x, high.y), level) && is_there(ivec2(high.x, low.y), level));
         level = found ? level : level - 1;
     } while (!found);
     int side = window << tile_bits;

@@ -135,8 +135,7 @@ std::vector<Tile> Clipmap::needed_tiles(const View& view, const GBufferView& gbu
             };
             for (int y = tile_at(needed[i + 1], -reach); y <= tile_at(needed[i + 1], reach); ++y)
                 for (int x = tile_at(needed[i], -reach); x <= tile_at(needed[i], reach); ++x)
-                    if (tiles.empty() || !(tiles.back() == Tile{level, x, y}))
-                        tiles.push_back({level, x, y});
+                    tiles.push_back({level, x, y});
         }
     }
     return tiles;

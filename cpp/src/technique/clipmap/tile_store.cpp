@@ -6,20 +6,37 @@
 namespace decalgl::clipmap {
 namespace {
 
-// Keeps those within a window around their middle.
-void cut_to_window(std::vector<Tile>& tiles, int window) {
-    int64_t x = 0, y = 0;
-    for (const Tile& tile : tiles) {
-        x += tile.x;
-        y += tile.y;
+// Where a window begins along one axis, so that the most of these numbers, rising, are inside.
+int best_window(std::vector<int> numbers, int window) {
+    std::sort(numbers.begin(), numbers.end());
+    size_t begin = 0, most = 0;
+    int best = 0;
+    for (size_t end = 0; end < numbers.size(); ++end) {
+        while (numbers[end] - numbers[begin] >= window)
+            ++begin;
+        if (end + 1 - begin > most) {
+            most = end + 1 - begin;
+            best = numbers[begin];
+        }
     }
-    const auto count = static_cast<int64_t>(tiles.size());
-    const int left = static_cast<int>((2 * x + count) / (2 * count)) - window / 2;
-    const int bottom = static_cast<int>((2 * y + count) / (2 * count)) - window / 2;
+    return best;
+}
+
+// Keeps those in the window that the most of them are in; tiles stand there as often as they are wanted.
+void cut_to_window(std::vector<Tile>& tiles, int window) {
+    std::vector<int> columns, rows;
+    for (const Tile& tile : tiles)
+        columns.push_back(tile.x);
+    const int left = best_window(columns, window);
+    for (const Tile& tile : tiles)
+        if (tile.x >= left && tile.x < left + window)
+            rows.push_back(tile.y);
+    const int bottom = best_window(rows, window);
     const auto outside = [&](const Tile& tile) {
         return tile.x < left || tile.y < bottom || tile.x >= left + window || tile.y >= bottom + window;
     };
     tiles.erase(std::remove_if(tiles.begin(), tiles.end(), outside), tiles.end());
+    tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
 }
 
 }  // namespace
@@ -42,7 +59,6 @@ size_t TileStore::slot_of(const Tile& tile) const {
 
 std::vector<Tile> TileStore::choose(std::vector<Tile> wanted) {
     std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     std::fill(readable_.begin(), readable_.end(), uint16_t{0});
     std::vector<Tile> missing;
     for (int level = 0; level < level_count; ++level) {

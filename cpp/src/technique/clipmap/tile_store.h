@@ -20,7 +20,7 @@ public:
 
     int window() const { return window_; }
     // Sets which tiles the picture in hand may read; returns those that are not there yet, coarse ones first. Those
-    // beyond a level's window, whose middle is that of its tiles, are left out.
+    // beyond a level's window, which is where the most are wanted, are left out. `wanted`: as often as pixels ask.
     std::vector<Tile> choose(std::vector<Tile> wanted);
     // A tile of the last choice is there, and may be read.
     void set_drawn(const Tile& tile);
