@@ -1,7 +1,7 @@
 """Shadow volumes beside the static index and the thesis's: its figure 5.5, with one colour and with hundreds.
 
 memory     bytes of prepared data and of GL objects
-prepare    milliseconds; triangulation by GEOS is in them
+prepare    milliseconds; cutting polygons into triangles is in them
 draw       milliseconds of the layers' passes at each view, without anti-aliasing
 """
 

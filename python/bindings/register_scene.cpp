@@ -7,6 +7,7 @@
 #include "decalgl/core/error.h"
 #include "decalgl/frame/scene.h"
 #include "decalgl/technique/dynamic_options.h"
+#include "decalgl/technique/clipmap_options.h"
 #include "decalgl/technique/volume_options.h"
 #include "decalgl/vector/layer_edit.h"
 #include "register.h"
@@ -140,6 +141,25 @@ void register_scene(py::module_& module) {
         .def_readwrite("casing", &LayerEdit::casing);
 
     py::class_<TechniqueOptions, std::shared_ptr<TechniqueOptions>>(module, "TechniqueOptions");
+    py::class_<clipmap::ClipmapOptions, TechniqueOptions, std::shared_ptr<clipmap::ClipmapOptions>>(
+        module, "ClipmapOptions")
+        .def(py::init([](int solution, bool inner_meets, double bevel_below, double thin_below, double widest_line,
+                         int window, int samples, int anisotropy, int tiles_a_frame) {
+                 clipmap::ClipmapOptions options;
+                 options.solution = static_cast<clipmap::LineSolution>(solution);
+                 options.inner_meets = inner_meets;
+                 options.bevel_below = bevel_below;
+                 options.thin_below = thin_below;
+                 options.widest_line = widest_line;
+                 options.window = window;
+                 options.samples = samples;
+                 options.anisotropy = anisotropy;
+                 options.tiles_a_frame = tiles_a_frame;
+                 return options;
+             }),
+             py::arg("solution"), py::arg("inner_meets"), py::arg("bevel_below"), py::arg("thin_below"),
+             py::arg("widest_line"), py::arg("window"), py::arg("samples"), py::arg("anisotropy"),
+             py::arg("tiles_a_frame"));
     py::class_<volume::VolumeOptions, TechniqueOptions, std::shared_ptr<volume::VolumeOptions>>(
         module, "VolumeOptions")
         .def(py::init([](bool exact, double arc_step) {

@@ -11,6 +11,7 @@ scene.render(scene.home(), size=(1920, 1080)).save("map.png")
 
 from ._core import __version__
 from .camera import Camera
+from .clipmap import Clipmap
 from .coloring import Coloring
 from .distance_field import DistanceField
 from .doctor import Diagnosis, doctor
@@ -51,6 +52,7 @@ __all__ = [
     "Camera",
     "CancelledError",
     "Casing",
+    "Clipmap",
     "Coloring",
     "ColumnError",
     "CrsError",

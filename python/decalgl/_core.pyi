@@ -162,6 +162,20 @@ def loops_simplified(
     choice: LoopsChoice,
 ) -> list[tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]]: ...
 
+class ClipmapOptions(TechniqueOptions):
+    def __init__(
+        self,
+        solution: int,
+        inner_meets: bool,
+        bevel_below: float,
+        thin_below: float,
+        widest_line: float,
+        window: int,
+        samples: int,
+        anisotropy: int,
+        tiles_a_frame: int,
+    ) -> None: ...
+
 class VolumeOptions(TechniqueOptions):
     def __init__(self, exact: bool, arc_step: float) -> None: ...
 

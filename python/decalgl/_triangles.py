@@ -1,9 +1,10 @@
-"""Polygons cut into triangles by GEOS, for techniques that draw meshes."""
+"""Polygons cut into triangles by mapbox_earcut, for techniques that draw meshes."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import mapbox_earcut
 import numpy as np
 import shapely
 
@@ -19,10 +20,25 @@ def triangles_of(features: FeatureTable) -> tuple[NDArray[np.float64], NDArray[n
     They cover what the even-odd rule over all rings of a feature says, and nothing twice.
     """
     regions = _regions(features)
-    triangles, owner = shapely.get_parts(shapely.constrained_delaunay_triangles(regions), return_index=True)
-    corners = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3]
-    count = np.bincount(owner, minlength=len(regions))
-    return np.ascontiguousarray(corners), np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+    polygons, owner = shapely.get_parts(regions, return_index=True)
+    corners = [_cut(polygon) for polygon in polygons]
+    counts = np.array([len(each) for each in corners], dtype=np.int64)
+    count = np.bincount(owner, weights=counts, minlength=len(regions)).astype(np.int64)
+    together = np.concatenate(corners) if corners else np.empty((0, 3, 2))
+    return together, np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
+
+
+def _cut(polygon: shapely.Polygon) -> NDArray[np.float64]:
+    """(triangles, 3, 2) of a valid polygon, whose holes mapbox_earcut takes after its exterior."""
+    coords, ring = shapely.get_coordinates(shapely.get_rings(polygon), return_index=True)
+    last = np.ones(len(coords), dtype=np.bool_)
+    last[:-1] = ring[1:] != ring[:-1]
+    vertices = np.ascontiguousarray(coords[~last])
+    ends = np.cumsum(np.bincount(ring[~last])).astype(np.uint32)
+    if not vertices.size:
+        return np.empty((0, 3, 2))
+    corners: NDArray[np.float64] = vertices[mapbox_earcut.triangulate_float64(vertices, ends)].reshape(-1, 3, 2)
+    return corners
 
 
 def _regions(features: FeatureTable) -> NDArray[np.object_]:
@@ -44,7 +60,7 @@ def _regions(features: FeatureTable) -> NDArray[np.object_]:
     return regions
 
 
-def _odd_faces(rings: shapely.MultiLineString) -> shapely.GeometryCollection:
+def _odd_faces(rings: shapely.MultiLineString) -> shapely.MultiPolygon:
     """The faces between rings that lie in an odd number of them."""
     faces = shapely.get_parts(shapely.polygonize([shapely.union_all(shapely.get_parts(rings))]))
     points = shapely.get_coordinates(shapely.point_on_surface(faces))
@@ -56,7 +72,7 @@ def _odd_faces(rings: shapely.MultiLineString) -> shapely.GeometryCollection:
             if crosses.any():
                 x = x0 + (points[crosses, 1] - y0) / (y1 - y0) * (x1 - x0)
                 inside[crosses] ^= x > points[crosses, 0]
-    return shapely.GeometryCollection(list(faces[inside]))
+    return shapely.MultiPolygon(list(faces[inside]))
 
 
 def _rings(features: FeatureTable) -> tuple[NDArray[np.object_], NDArray[np.int64]]:

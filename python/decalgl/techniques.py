@@ -4,6 +4,7 @@
 "static"    world-size lines and polygons, looked up pixel by pixel: docs/techniques/static.md
 "dynamic"   lines of constant size on the screen: docs/techniques/dynamic.md
 "loops"     world-size, simplified where and as much as the view allows: docs/techniques/loops.md
+"clipmap"   textures in levels that follow the view: docs/techniques/clipmap.md
 "volume"    meshes around the terrain, counted in the stencil: docs/techniques/volume.md
 "distance_field"   networks of lines, restyled as a whole: docs/techniques/distance_field.md
 """

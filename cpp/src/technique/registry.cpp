@@ -4,6 +4,7 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/technique/technique.h"
+#include "technique/clipmap/clipmap.h"
 #include "technique/dynamic_lines/dynamic_lines.h"
 #include "technique/loops/loops.h"
 #include "technique/shadow_volumes/shadow_volumes.h"
@@ -22,6 +23,7 @@ const std::map<std::string, MakeTechnique>& registry() {
         {"dynamic", [] { return std::make_unique<DynamicLines>(); }},
         {"distance_field", [] { return std::make_unique<DistanceField>(); }},
         {"static", [] { return std::make_unique<StaticDecals>(); }},
+        {"clipmap", [] { return std::make_unique<Clipmap>(); }},
         {"volume", [] { return std::make_unique<ShadowVolumes>(); }},
         {"static_bvh", [] { return std::make_unique<StaticBvh>(); }},
     };

@@ -56,25 +56,39 @@ void VolumeMesher::add(const Triangle& triangle) {
     const HeightRange heights = area == 0 ? HeightRange{} : heights_.under(triangle.box());
     if (heights.empty())
         return;
-    triangles_.push_back(vertex(triangle.a, heights));
-    triangles_.push_back(vertex(area > 0 ? triangle.b : triangle.c, heights));
-    triangles_.push_back(vertex(area > 0 ? triangle.c : triangle.b, heights));
+    const auto add = [&](LatticePoint at) {
+        points_.push_back(uint64_t{static_cast<uint32_t>(at.x)} << 32 | static_cast<uint32_t>(at.y));
+    };
+    add(triangle.a);
+    add(area > 0 ? triangle.b : triangle.c);
+    add(area > 0 ? triangle.c : triangle.b);
+    ranges_.push_back(heights);
 }
 
-uint32_t VolumeMesher::vertex(LatticePoint at, HeightRange heights) {
-    const uint64_t key = uint64_t{static_cast<uint32_t>(at.x)} << 32 | static_cast<uint32_t>(at.y);
-    const auto [place, is_new] = places_.try_emplace(key, static_cast<uint32_t>(result_.vertices.size()));
-    if (is_new)
-        result_.vertices.push_back({at.x, at.y, heights.low, heights.high});
-    VolumeVertex& found = result_.vertices[place->second];
-    found.low = std::min(found.low, heights.low);
-    found.high = std::max(found.high, heights.high);
-    return place->second;
+// Each point once, with the heights of all triangles that it belongs to.
+void VolumeMesher::add_vertices() {
+    known_ = points_;
+    std::sort(known_.begin(), known_.end());
+    known_.erase(std::unique(known_.begin(), known_.end()), known_.end());
+    const auto first = static_cast<uint32_t>(result_.vertices.size());
+    for (const uint64_t point : known_)
+        result_.vertices.push_back(
+            {static_cast<int32_t>(point >> 32), static_cast<int32_t>(point & 0xFFFFFFFF),
+             std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()});
+    triangles_.resize(points_.size());
+    for (size_t i = 0; i < points_.size(); ++i) {
+        const auto place = std::lower_bound(known_.begin(), known_.end(), points_[i]) - known_.begin();
+        triangles_[i] = first + static_cast<uint32_t>(place);
+        VolumeVertex& vertex = result_.vertices[triangles_[i]];
+        vertex.low = std::min(vertex.low, ranges_[i / 3].low);
+        vertex.high = std::max(vertex.high, ranges_[i / 3].high);
+    }
 }
 
 void VolumeMesher::finish(uint32_t decal) {
-    if (triangles_.empty())
+    if (points_.empty())
         return;
+    add_vertices();
     Volume volume{decal, static_cast<uint32_t>(result_.corners.size()), 0,
                   static_cast<uint32_t>(triangles_.size()), {}, {}};
     for (const uint32_t vertex : triangles_) {
@@ -89,8 +103,8 @@ void VolumeMesher::finish(uint32_t decal) {
     add_walls();
     volume.corner_count = static_cast<uint32_t>(result_.corners.size()) - volume.first_corner;
     result_.volumes.push_back(volume);
-    triangles_.clear();
-    places_.clear();
+    points_.clear();
+    ranges_.clear();
 }
 
 // Edges of the same two vertices stand beside each other when sorted; those that run against each other cancel out.

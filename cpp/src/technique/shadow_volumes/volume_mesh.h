@@ -8,7 +8,6 @@
 //         |______|/   low
 #pragma once
 
-#include <unordered_map>
 #include <vector>
 
 #include "decalgl/core/span.h"
@@ -34,13 +33,15 @@ public:
     void finish(uint32_t decal);
 
 private:
-    uint32_t vertex(LatticePoint at, HeightRange heights);
+    void add_vertices();
     void add_walls();
 
     const HeightRanges& heights_;
     MeshedVolumes& result_;
-    std::vector<uint32_t> triangles_;  // places of vertices, three each
-    std::unordered_map<uint64_t, uint32_t> places_;
+    std::vector<uint64_t> points_;         // three a triangle: x and y in one number
+    std::vector<HeightRange> ranges_;      // one a triangle
+    std::vector<uint64_t> known_;          // the points, each once
+    std::vector<uint32_t> triangles_;      // places of vertices, three each
 };
 
 }  // namespace decalgl::volume

@@ -1,0 +1,69 @@
+// The virtual texture at each pixel: samples along the footprint's longer side, each between two levels of detail.
+//
+// GATHERED_FOOTPRINT   texels are samples from anywhere in the picture: their footprint is that of the picture's middle
+#include "technique/clipmap/place.glsl"
+
+layout(location = 0) out vec4 color;
+
+uniform sampler2DArray tiles;
+uniform usampler2D table;  // x + 1, y + 1 of the tile that may be read in each slot
+uniform int window;        // tiles, a power of two
+
+bool is_there(ivec2 texel, int level) {
+    ivec2 tile = texel >> tile_bits;
+    ivec2 slot = tile & (window - 1);
+    uvec2 found = texelFetch(table, ivec2(slot.x, level * window + slot.y), 0).xy;
+    return found == uvec2(tile + 1);
+}
+
+// Colour at a place of the finest level, from the level of detail asked for or the next one that is there.
+vec4 color_at(ivec2 texel, vec2 fraction, int detail) {
+    int level = finest_level - detail;
+    ivec2 own = texel;
+    vec2 rest = fraction;
+    bool found = false;
+    do {
+        int shift = finest_level - level;
+        own = texel >> shift;
+        rest = (vec2(texel & ((1 << shift) - 1)) + fraction) / float(1 << shift);
+        // All tiles that linear filtering reads from.
+        ivec2 limit = ivec2((1 << (level + tile_bits)) - 1);
+        ivec2 low = clamp(own + ivec2(floor(rest - 0.5)), ivec2(0), limit);
+        ivec2 high = min(low + 1, limit);
+        found = level == 0 || (is_there(low, level) && is_there(high, level) &&
+                               is_there(ivec2(low.x, high.y), level) && is_there(ivec2(high.x, low.y), level));
+        level = found ? level : level - 1;
+    } while (!found);
+    int side = window << tile_bits;
+    vec2 at = (vec2(own & (side - 1)) + rest) / float(side);
+    return textureLod(tiles, vec3(at, float(level)), 0.0);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    Position position = unpack_position(texelFetch(position_texture, pixel, 0));
+    vec4 surface = texelFetch(surface_texture, pixel, 0);
+    if (is_sky(position)) {
+        color = vec4(0.0);
+        return;
+    }
+#ifdef GATHERED_FOOTPRINT
+    Place place = place_of(position, surface, vec2(0.0));
+#else
+    Place place = place_of(position, surface, pixel_from_centre());
+#endif
+    int detail = int(floor(place.level));
+    float coarser = place.level - float(detail);
+    vec4 sum = vec4(0.0);
+    float tap = 0.0;
+    do {
+        vec2 at = place.fraction + ((tap + 0.5) / place.taps - 0.5) * place.along;
+        ivec2 texel = place.texel + ivec2(floor(at));
+        vec2 fraction = fract(at);
+        vec4 fine = color_at(texel, fraction, detail);
+        vec4 coarse = coarser > 0.0 ? color_at(texel, fraction, min(detail + 1, finest_level)) : fine;
+        sum += mix(fine, coarse, coarser);
+        tap += 1.0;
+    } while (tap < place.taps);
+    color = sum / place.taps;
+}

@@ -1,0 +1,89 @@
+"""Clipmap textures: vectors drawn into tiles of a virtual texture (docs/techniques/clipmap.md)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from . import _core
+from .errors import StyleError
+from .techniques import Technique
+
+Solution = Literal["1", "2", "3a", "3b", "4a", "4b", "4b polar"]
+SOLUTIONS = ("1", "2", "3a", "3b", "4a", "4b", "4b polar")
+RANGES: dict[str, tuple[float, float]] = {
+    "bevel_below": (10.0, 180.0),
+    "thin_below": (0.0, 1000.0),
+    "widest_line": (1.0, 255.0),
+    "window": (512, 4096),
+    "samples": (1, 4),
+    "anisotropy": (1, 64),
+    "tiles_a_frame": (1, 1 << 20),
+}
+WHOLE = ("window", "samples", "anisotropy", "tiles_a_frame")
+
+
+@dataclass(frozen=True)
+class Clipmap(Technique):
+    """Clipmap line textures (Taibo et al. 2014): 2^20 x 2^20 texels in levels of 256 x 256 tiles, drawn on demand.
+
+    solution: how lines get into tiles, by the paper's numbers: "1" line primitives, "2" tessellated before, "3a" both,
+        "3b" tessellated, and wireframe where thin, "4a" by a geometry shader, "4b" by offsets worked out before, in
+        rectangular or in "4b polar" coordinates.
+    joints: of angles below `bevel_below` degrees, "3b" (inner borders meet, so nothing is drawn twice) or "3a".
+    thin_below: texels; thinner lines are line primitives, but for solutions 1 and 2.
+    widest_line: texels to which line primitives are clamped.
+    window: texels of each level that are kept, 512 to 4096; None: as many as the picture is wide.
+    samples: of a texel, 1 (smooth lines, jagged polygons, as in the paper), 2 or 4.
+    anisotropy: most samples along the longer side of a pixel.
+    tiles_a_frame: the most tiles that are drawn for one picture; None: all that it needs.
+
+    It shows what its textures hold: no ids, no picking, no patterns, bands, hatches, slope corrections and outlines on one
+    side; it stays as it was prepared. Raises StyleError for values out of range.
+    """
+
+    name = "clipmap"
+    needs_triangles = True
+    solution: Solution = "4b"
+    joints: Literal["3a", "3b"] = "3b"
+    bevel_below: float = 90.0
+    thin_below: float = 1.5
+    widest_line: float = 10.0
+    window: int | None = None
+    samples: int = 4
+    anisotropy: int = 8
+    tiles_a_frame: int | None = None
+
+    def __post_init__(self) -> None:
+        for name, known in (("solution", SOLUTIONS), ("joints", ("3a", "3b"))):
+            value = getattr(self, name)
+            if value not in known:
+                raise StyleError(
+                    f"Clipmap: {name} must be one of {', '.join(map(repr, known))}, but it is {value!r}."
+                )
+        for name, (least, most) in RANGES.items():
+            value = getattr(self, name)
+            if value is None and name in ("window", "tiles_a_frame"):
+                continue
+            if not _is_number(value, name in WHOLE) or not least <= value <= most:
+                raise StyleError(f"Clipmap: {name} must be from {least:g} to {most:g}, but it is {value!r}.")
+        if self.samples == 3:
+            raise StyleError("Clipmap: samples must be 1, 2 or 4, but it is 3.")
+
+    def core_options(self) -> _core.TechniqueOptions:
+        """As the core takes them."""
+        return _core.ClipmapOptions(
+            solution=SOLUTIONS.index(self.solution),
+            inner_meets=self.joints == "3b",
+            bevel_below=float(self.bevel_below),
+            thin_below=float(self.thin_below),
+            widest_line=float(self.widest_line),
+            window=self.window or 0,
+            samples=self.samples,
+            anisotropy=self.anisotropy,
+            tiles_a_frame=self.tiles_a_frame or 0,
+        )
+
+
+def _is_number(value: Any, whole: bool) -> bool:
+    return isinstance(value, int if whole else (int, float)) and not isinstance(value, bool)
