@@ -11,6 +11,7 @@ interior     interior: what does the inside of a large polygon cost?
 stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
+distance_field   sets, drawn, field_memory: what do networks by distance fields cost?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 """
 
@@ -19,6 +20,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import (
+    distance_field,
     files,
     indexes,
     interaction,
@@ -52,4 +54,5 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "ring": ring.measure,
     "interaction": interaction.measure,
     "styles": styles.measure,
+    "distance_field": distance_field.measure,
 }

@@ -18,7 +18,7 @@ double area(double d, double nx, double ny) {
     for (int i = 0; i < side; ++i)
         for (int k = 0; k < side; ++k)
             inside += nx * ((i + 0.5) / side - 0.5) + ny * ((k + 0.5) / side - 0.5) <= d;
-    return double{inside} / (side * side);
+    return static_cast<double>(inside) / (side * side);
 }
 
 }  // namespace
@@ -46,7 +46,9 @@ TEST_CASE("half planes and strips cover their exact share of a pixel") {
 }
 
 TEST_CASE("ways across a line survive eight bits, and those of segments come first") {
-    OnePixel shader({"technique/distance_field/field_values.glsl"}, 1,
+    OnePixel shader({"shared/position.glsl", "shared/ray.glsl", "shared/stroke.glsl",
+                     "technique/distance_field/field_values.glsl"},
+                    1,
                     "float value = packed_turn(input0.x, input0.y > 0.0);\n"
                     "result.xy = unpacked_turn(round(255.0 * value) / 255.0);\n"
                     "result.z = value;\n");

@@ -42,12 +42,12 @@ Heightfield waves() {
     return Heightfield(heights, 101, 101, 0.0, 1000.0, 10.0, 10.0);
 }
 
-struct Prepared {
+struct Example {
     Heightfield terrain = waves();
     std::vector<Layer> layers;
     std::unique_ptr<PreparedNetwork> network;
 
-    Prepared(std::vector<Layer> given, std::shared_ptr<const DistanceFieldOptions> options = nullptr)
+    Example(std::vector<Layer> given, std::shared_ptr<const DistanceFieldOptions> options = nullptr)
         : layers(std::move(given)) {
         for (Layer& layer : layers)
             layer.technique = {"distance_field", options};
@@ -76,7 +76,7 @@ NetworkCategory category(const std::string& name, double width) {
 }  // namespace
 
 TEST_CASE("places are nodes, whichever lines meet there") {
-    const Prepared prepared(
+    const Example prepared(
         {layer_of({{100, 100, 200, 100, 300, 100}, {200, 100, 200, 200}, {300, 100, 300, 100}}, 8)});
     const Network& network = prepared.made();
     REQUIRE(network.nodes.size() == 4);
@@ -92,7 +92,7 @@ TEST_CASE("places are nodes, whichever lines meet there") {
 }
 
 TEST_CASE("long segments are pieces without caps between them, and what lies outside is cut away") {
-    const Prepared prepared({layer_of({{-1e9, 500, 1e9, 500}, {-5000, -5000, -4000, -5000}}, 8)});
+    const Example prepared({layer_of({{-1e9, 500, 1e9, 500}, {-5000, -5000, -4000, -5000}}, 8)});
     const Network& network = prepared.made();
     REQUIRE(network.segments.size() == 2);  // 1008 m of pieces of up to 640 m
     CHECK(network.segments[0].ends == PLAIN_A);
@@ -165,7 +165,7 @@ TEST_CASE("ends at other categories are cut, and lines of one category are kept 
     options->category_of = {0, 1, 0, no_network_category};
     options->mend_protrusion = options->mend_intrusion = true;
     options->widths_at = LodPlace::vertex;
-    const Prepared prepared(
+    const Example prepared(
         {layer_of({{500, 500, 500, 600}, {400, 500, 500, 500, 600, 500}, {520, 530, 520, 600}, {0, 0, 9, 9}},
                   1)},
         options);

@@ -86,10 +86,12 @@ float half_width_at(int category, Node node, vec3 place) {
 #endif
 }
 
+// As far as the main colour of the category that the line ends at.
 float cut_at(uint ends, int shift, vec3 place) {
     int category = int(ends >> shift & CUT_MASK) - 1;
     if (category < 0) return no_cut;
-    return style_at(category_at(category), lod_at(seen_at(place))).half_width;
+    Style style = style_at(category_at(category), lod_at(seen_at(place)));
+    return style.half_width * style.main;
 }
 
 bool out_of_sight(vec4 corners[8]) {
