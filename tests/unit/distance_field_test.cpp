@@ -104,7 +104,8 @@ TEST_CASE("long segments are pieces without caps between them, and what lies out
 
 TEST_CASE("ranges of heights hold every sample around a rectangle") {
     const Heightfield terrain = waves();
-    const HeightRanges ranges(terrain, 0);
+    const MemoryAccount memory;
+    const HeightRanges ranges(terrain, 0, memory);
     std::mt19937 generator(5);
     std::uniform_real_distribution<double> place(-100.0, 1100.0);
     for (int i = 0; i < 2000; ++i) {
@@ -211,4 +212,9 @@ TEST_CASE("options that contradict themselves are refused") {
     options = {};
     options.lod.source = LodSource::texture;
     CHECK(kind_of([&] { validate(options); }) == ErrorKind::style);
+}
+
+TEST_CASE("a network that does not fit into its budget is refused before it is made") {
+    const Heightfield terrain = waves();
+    CHECK(kind_of([&] { HeightRanges(terrain, 0, MemoryAccount(1000)); }) == ErrorKind::memory);
 }
