@@ -67,6 +67,9 @@ RATIOS = {
         "{bands_coverage_ms:.1f} ms ÷ one rectangle {rectangle_coverage_ms:.1f} ms, coverage", most=1.1
     ),
     "opaque_stack": Ratio("{opaque_ms:.1f} ms ÷ side by side {disjoint_ms:.1f} ms", most=2.0),
+    "sets": Ratio("{style_sets} style sets {sets_ms:.1f} ms ÷ one"),
+    "drawn": Ratio("{style_sets} style sets {sets_ms:.1f} ms ÷ static lines {static_ms:.1f} ms"),
+    "field_memory": Ratio("{field_bytes:,} bytes ÷ categories x pixels x targets x bytes", most=1.0),
     "restyle": Ratio("{restyle_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
     "filter": Ratio("{filter_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
     "edit": Ratio("{edit_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),

@@ -101,6 +101,24 @@ MODES = {
     "oblique ÷ `none`": "{oblique[mode]:.2f}",
 }
 
+NETWORKS = {
+    "roads": "{town}",
+    "picture": "{picture}",
+    "1 set": "{sets1[sets_ms]:.1f} ms",
+    "2 ÷ 1": "{sets2[sets]:.2f}",
+    "4 ÷ 1": "{sets4[sets]:.2f}",
+    "8 ÷ 1": "{sets8[sets]:.2f}",
+    "8 ÷ static lines": "{sets8[drawn]:.1f}",
+}
+FIELDS = {
+    "roads": "{town}",
+    "segments": "{segments:,}",
+    "bits": "{bits}",
+    "fields": "{field_bytes:,} bytes",
+    "÷ formula": "{field_memory:.2f}",
+    "buffers": "{bytes_per_segment_stored:.1f} bytes a segment",
+}
+
 
 def summary(results: Results) -> str:
     """For the README: isolines in milliseconds, then what preparing costs."""
@@ -168,6 +186,16 @@ def styles(results: Results) -> str:
 def changes(results: Results) -> str:
     """What changes of a map take, in frames of the view of all of it."""
     return "\n\n".join([_table(_having(results, "restyle"), CHANGES), machine(results)])
+def networks(results: Results) -> str:
+    """Networks by distance fields: style sets by pictures, and memory."""
+    drawn: dict[tuple[str, str], Record] = {}
+    for one in _having(results, "sets", techniques=("distance_field",)):
+        key = (one["town"], one["picture"])
+        drawn.setdefault(key, {"town": key[0], "picture": key[1]})[f"sets{one['style_sets']}"] = one
+    if not drawn:
+        return "No figures yet."
+    fields = _having(results, "field_memory", techniques=("distance_field",))
+    return "\n\n".join([_table(list(drawn.values()), NETWORKS), _table(fields, FIELDS)])
 
 
 BLOCKS: dict[str, Callable[[Results], str]] = {
@@ -178,6 +206,7 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "extremes": extremes,
     "styles": styles,
     "changes": changes,
+    "networks": networks,
 }
 
 

@@ -49,6 +49,7 @@ class Workload:
     sizes: by name, from the smallest to the largest.
     middle: the name of the size at which indexes, layers and shapes are compared.
     folder: where contours are kept.
+    towns: whose roads are measured; none: streets at random.
     depths: of the stacks of polygons. ring: vertices and holes of the spiked ring.
     """
 
@@ -61,6 +62,7 @@ class Workload:
     runs: int = 5
     depths: tuple[int, ...] = (10, 50, 100, 500, 1000, 2000)
     ring: tuple[int, int] = (5_000_000, 10_000)
+    towns: tuple[str, ...] = ("helsinki", "monaco")
 
     def runs_of(self, size: str) -> int:
         """How often to measure at a size."""
@@ -130,6 +132,16 @@ def real_ground() -> dg.Terrain:
         subprocess.run(fetch, check=True)
         path = next(DATA.glob("sf/**/*.tif"))
     return _without_rim(dg.Terrain.open(path))
+
+
+def town_file(town: str) -> Path:
+    """A town's extract of OpenStreetMap, fetched where it is missing."""
+    path = DATA / town / f"{town}.osm.pbf"
+    if not path.is_file():
+        subprocess.run(
+            [sys.executable, str(ROOT / "examples" / "fetch_data.py"), town, "--out", str(DATA)], check=True
+        )
+    return path
 
 
 def _without_rim(ground: dg.Terrain) -> dg.Terrain:

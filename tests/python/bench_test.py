@@ -53,6 +53,7 @@ def records(bench: Any, tmp_path_factory: pytest.TempPathFactory) -> list[dict[s
         runs=1,
         depths=(3,),
         ring=(4000, 20),
+        towns=(),
     )
     found: list[dict[str, Any]] = program.run(work, modules.suites.SUITES).list()
     return found

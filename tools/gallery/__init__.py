@@ -3,5 +3,6 @@
 sheet       panels with labels beside each other, as one picture
 lines       strokes: corners, caps, patterns, bands, casings
 polygons    outlines, hatches, and what lies over what
+networks    distance fields: countries, levels of detail, borders, artefacts
 maps        Honolulu: colours with legends, both indexes, anti-aliasing, silhouettes; widths on slopes
 """

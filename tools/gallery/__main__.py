@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from . import lines, maps, polygons
+from . import lines, maps, networks, polygons
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -14,7 +14,12 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "images" / "gallery"
-PICTURES: dict[str, Callable[[], Image]] = {**lines.PICTURES, **polygons.PICTURES, **maps.PICTURES}
+PICTURES: dict[str, Callable[[], Image]] = {
+    **lines.PICTURES,
+    **polygons.PICTURES,
+    **maps.PICTURES,
+    **networks.PICTURES,
+}
 
 
 def draw(name: str, folder: Path) -> Path:

@@ -1,6 +1,6 @@
 // The fields of one segment, into the layer of its category: how far the pixel's place on the map lies from it.
 //
-//     cross     0 on the line ... 1 where the field ends; with ANGLES also the way away from it, as a share of a turn
+//     cross     0 on the line ... 1 where the field ends; with ANGLES also the way away from it (field_values.glsl)
 //     length    metres along the line; with PHASES a share of the category's period
 //     depth     the eye's distance, as a level of detail
 //
@@ -101,6 +101,10 @@ void main() {
     float value = drop_off(shape, vec2(beyond, across) * stretch / field_reach);
     if (!(value < 1.0)) discard;
     float metres_along = way.w + share * way.z;
+#ifdef ANGLES
+    // A cap is all at its node: far enough inside the line for a mark that begins there to cover the whole pixel.
+    metres_along += before ? surface.pixel : behind ? -surface.pixel : 0.0;
+#endif
 #ifdef IDS
 #ifdef LENS
     if (int(texelFetch(lens_texture, texel, 0).y) != lens_side) discard;
@@ -122,7 +126,7 @@ void main() {
 #endif
     vec2 gradient = transpose(surface.footprint) * shift;
     float angle = atan(gradient.y, gradient.x) / 6.2831853 + 1.0;
-    cross_field = vec2(value, fract(angle));
+    cross_field = vec2(value, packed_turn(angle, before || behind));
 #else
     cross_field = value;
 #endif

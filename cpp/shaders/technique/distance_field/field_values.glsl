@@ -33,6 +33,16 @@ Seen seen_from(Position position, Surface surface) {
     return Seen(place, forward.w + surface.distance, dot(at, camera_right()), pixel / spacing.zw + 0.5);
 }
 
+// The way away from the line, as a share of a turn. Where a cap and a segment overlap, the least is the segment's.
+float packed_turn(float turn, bool is_cap) {
+    return 0.5 * fract(turn) + (is_cap ? 0.5 : 0.0);
+}
+
+vec2 unpacked_turn(float value) {
+    float angle = 6.2831853 * fract(2.0 * value);
+    return vec2(cos(angle), sin(angle));
+}
+
 float reach_of(Category category, Surface surface) {
     float margin = 0.0;
 #ifdef ANGLES

@@ -1,5 +1,6 @@
 // Boxes around segments, over all the ground that a segment's field may lie on: every pixel that may see it is
-// inside, and is drawn once, by the box's far side. So the eye may be inside too.
+// inside, and is drawn once: by a rectangle around the box on the screen, along the segment; or, of boxes that reach
+// behind the eye, by the box's far side. So the eye may be inside too.
 //
 //          +-----------+
 //         /|  o─────o /|      as wide as the field reaches, and some pixels more at either end
@@ -86,10 +87,12 @@ float half_width_at(int category, Node node, vec3 place) {
 #endif
 }
 
+// As far as the main colour of the category that the line ends at.
 float cut_at(uint ends, int shift, vec3 place) {
     int category = int(ends >> shift & CUT_MASK) - 1;
     if (category < 0) return no_cut;
-    return style_at(category_at(category), lod_at(seen_at(place))).half_width;
+    Style style = style_at(category_at(category), lod_at(seen_at(place)));
+    return style.half_width * style.main;
 }
 
 bool out_of_sight(vec4 corners[8]) {
@@ -101,6 +104,32 @@ bool out_of_sight(vec4 corners[8]) {
         behind += int(c.w <= 0.0);
     }
     return behind == 8 || any(equal(beyond, ivec4(8)));
+}
+
+// Whether all corners are before the eye, and so far that they can be divided by their w.
+bool is_before_eye(vec4 corners[8]) {
+    float least = corners[0].w, most = corners[0].w;
+    for (int i = 1; i < 8; ++i) {
+        least = min(least, corners[i].w);
+        most = max(most, corners[i].w);
+    }
+    return least > 0.01 * most;
+}
+
+// The rectangle around the corners on the screen, in pixels: its directions, and the least and most along them.
+void rectangle_around(vec4 corners[8], out mat2 axes, out vec2 least, out vec2 most) {
+    vec2 half_size = 0.5 * spacing.zw;
+    vec2 along = half_size * (corners[5].xy / corners[5].w - corners[4].xy / corners[4].w);
+    float size = length(along);
+    along = size > 0.0 ? along / size : vec2(1.0, 0.0);
+    axes = mat2(along, vec2(-along.y, along.x));
+    least = vec2(1e30);
+    most = vec2(-1e30);
+    for (int i = 0; i < 8; ++i) {
+        vec2 place = (half_size * corners[i].xy / corners[i].w) * axes;
+        least = min(least, place);
+        most = max(most, place);
+    }
 }
 
 void main() {
@@ -143,10 +172,16 @@ void main() {
                             cap_at(category, a, (ends & LINE_ENDS_AT_A) != 0u, (ends & PLAIN_A) == 0u),
                             cap_at(category, b, (ends & LINE_ENDS_AT_B) != 0u, false), int(slot.y));
     vec4 own_widths = vec4(half_widths, cut_at(ends, CUT_A_SHIFT, place_a), cut_at(ends, CUT_B_SHIFT, place_b));
-    // A strip around the box: bit i of each number is the coordinate of vertex i.
-    for (int i = 0; i < 14; ++i) {
+    bool is_flat = is_before_eye(corners);
+    mat2 axes;
+    vec2 least, most;
+    if (is_flat) rectangle_around(corners, axes, least, most);
+    int count = is_flat ? 4 : 14;
+    for (int i = 0; i < count; ++i) {
+        // A strip around the box: bit i of each number is the coordinate of vertex i. The rectangle faces away too.
         int corner = (0x287A >> i & 1) | (0x02AF >> i & 1) << 1 | (0x31E3 >> i & 1) << 2;
-        gl_Position = corners[corner];
+        vec2 place = axes * vec2((i & 2) != 0 ? most.x : least.x, (i & 1) != 0 ? most.y : least.y);
+        gl_Position = is_flat ? vec4(place / (0.5 * spacing.zw), 0.5, 1.0) : corners[corner];
 #ifndef IDS
         gl_Layer = category;
 #endif

@@ -152,8 +152,7 @@ Layer layer_at(int category, Source source, float lod, Surface surface) {
     float pixel = surface.pixel;
     vec2 normal = vec2(1.0, 0.0);
 #ifdef ANGLES
-    float angle = 6.2831853 * field.g;
-    normal = vec2(cos(angle), sin(angle));
+    normal = unpacked_turn(field.g);
     vec2 metres = inverse(transpose(source.surface.footprint)) * normal;
 #endif
 #ifdef GATHERED

@@ -18,9 +18,21 @@ HeightRange joined(HeightRange a, HeightRange b) {
     return {std::min(a.lowest, b.lowest), std::max(a.highest, b.highest)};
 }
 
+// Each level has a quarter of the one before, rounded up.
+uint64_t ranges_bytes(const Heightfield& terrain) {
+    uint64_t count = 0;
+    for (int32_t rows = terrain.rows(), columns = terrain.columns(); rows > 1 || columns > 1;) {
+        rows = (rows + 1) / 2;
+        columns = (columns + 1) / 2;
+        count += static_cast<uint64_t>(rows) * static_cast<uint64_t>(columns);
+    }
+    return count * sizeof(HeightRange);
+}
+
 }  // namespace
 
-HeightRanges::HeightRanges(const Heightfield& terrain, unsigned threads) : terrain_(terrain) {
+HeightRanges::HeightRanges(const Heightfield& terrain, unsigned threads, const MemoryAccount& memory)
+    : terrain_(terrain), charge_(memory, "distance_field: ground", ranges_bytes(terrain)) {
     int32_t rows = terrain.rows(), columns = terrain.columns();
     while (rows > 1 || columns > 1) {
         Level next{(rows + 1) / 2, (columns + 1) / 2, {}};

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "decalgl/core/memory.h"
 #include "decalgl/terrain/heightfield.h"
 
 namespace decalgl::network {
@@ -16,7 +17,8 @@ struct HeightRange {
 
 class HeightRanges {
 public:
-    HeightRanges(const Heightfield& terrain, unsigned threads);
+    // Throws Error(memory).
+    HeightRanges(const Heightfield& terrain, unsigned threads, const MemoryAccount& memory);
 
     // Over the samples whose triangles reach into the rectangle.
     HeightRange over(const Bounds& rectangle) const;
@@ -35,6 +37,7 @@ private:
     HeightRange at(size_t level, int32_t row, int32_t column) const;
 
     Heightfield terrain_;  // shares its samples
+    MemoryCharge charge_;
     std::vector<Level> levels_;  // level k: of 2^(k+1) samples a side
 };
 

@@ -3,7 +3,7 @@
 //     intrusion    lines of one category, wider than the ground between them, run into each other: each node
 //                  learns how wide its lines may be
 //     protrusion   the cap of a line that ends at a narrower one of another category stands out behind it: the
-//                  cap is cut at the narrower one's border
+//                  cap is cut where the narrower one's main colour ends
 #pragma once
 
 #include "technique/distance_field/categories.h"

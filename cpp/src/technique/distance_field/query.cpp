@@ -35,9 +35,11 @@ public:
     Reader(const PreparedNetwork& prepared, const SeenPoint& point)
         : prepared_(&prepared), network_(prepared.network.get()), point_(point) {
         const LevelOfDetail& lod = prepared.options->lod;
-        for (const NetworkCategory& category : prepared.table.categories)
-            half_widths_.push_back(knows_lod(lod) ? 0.5 * style_at(category, lod_at(lod, point)).width
-                                                  : widest_half_width(category));
+        for (const NetworkCategory& category : prepared.table.categories) {
+            const NetworkStyle style = style_at(category, lod_at(lod, point));
+            half_widths_.push_back(knows_lod(lod) ? 0.5 * style.width : widest_half_width(category));
+            mains_.push_back(style.main);
+        }
         steep_ = point.gradient_x * point.gradient_x + point.gradient_y * point.gradient_y;
     }
 
@@ -107,7 +109,7 @@ private:
         if (!is_end && (!at_a || (segment.ends & PLAIN_A) != 0))
             return false;
         const uint32_t cut = segment.ends >> (at_a ? CUT_A_SHIFT : CUT_B_SHIFT) & CUT_MASK;
-        if (cut != 0 && beyond > half_widths_[cut - 1])
+        if (cut != 0 && beyond > half_widths_[cut - 1] * mains_[cut - 1])
             return false;
         const uint32_t grade = network_->nodes[at_a ? segment.a : segment.b].grade();
         const int cap =
@@ -124,6 +126,7 @@ private:
     SeenPoint point_;
     double steep_ = 0.0;
     std::vector<double> half_widths_;
+    std::vector<double> mains_;
 };
 
 }  // namespace
