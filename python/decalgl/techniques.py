@@ -73,7 +73,7 @@ TECHNIQUES: tuple[type[Technique], ...] = (Static, Dynamic)
 def resolve_technique(technique: str | Technique, layer_name: str, follows_view: bool) -> Technique:
     """The technique of a layer. follows_view: whether its widths are those on the screen. Raises StyleError."""
     by_name = {each.name: each for each in TECHNIQUES}
-    if technique == "auto":
+    if is_word(technique, ("auto",)):
         return Dynamic() if follows_view else Static()
     if isinstance(technique, str) and technique in by_name:
         technique = by_name[technique]()
