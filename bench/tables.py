@@ -186,6 +186,8 @@ def styles(results: Results) -> str:
 def changes(results: Results) -> str:
     """What changes of a map take, in frames of the view of all of it."""
     return "\n\n".join([_table(_having(results, "restyle"), CHANGES), machine(results)])
+
+
 def networks(results: Results) -> str:
     """Networks by distance fields: style sets by pictures, and memory."""
     drawn: dict[tuple[str, str], Record] = {}

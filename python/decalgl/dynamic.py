@@ -16,7 +16,7 @@ class Dynamic(Technique):
     """Lines whose widths are those on the screen (Zechmeister 2020, sections 3.2.2 and 3.3).
 
     method: how a pixel finds its lines: "bins", by tiles of the screen; "lists", by lists that boxes around the lines
-        fill, as the thesis describes; "auto", the faster one for so many segments.
+        fill, as the thesis describes; "auto", tiles, which are faster, but for width_rule="thesis".
     width_rule: "screen", as wide as on the screen; "thesis", on the ground by the distance, with "lists" alone.
     cell: pixels; of neighbouring vertices that fall together in one such cell, a line keeps the first. 0 keeps all.
 

@@ -195,7 +195,7 @@ def _lines_scene() -> dg.Scene:
 
 def zooms() -> Image.Image:
     """Isolines and roads of 12 m, and of 1.6 pixels, from three distances (after Zechmeister 2020, figure 3.2)."""
-    size = panel_size(3, 170)
+    size = panel_size(3, 104)
     roads = _cover()[_cover()["material"].isin(("Road", "Freeway"))]
     panels = {}
     for label, looks in (("12 m", {"width": 12, "width_units": "m"}), ("1.6 pixels", {"width": 1.6})):

@@ -8,7 +8,7 @@
 namespace decalgl {
 
 // How a pixel finds its lines: by tiles of the screen, or by lists that boxes around the lines fill (Zechmeister 2020,
-// section 3.3.2); automatic: the faster one for so many segments.
+// section 3.3.2); automatic: bins, which are faster.
 enum class LineMethod : uint32_t { automatic, bins, lists };
 // As wide as on the screen, or on the ground by the distance (Zechmeister 2020, equations 4.1 and 4.2).
 enum class LineWidthRule : uint32_t { screen, thesis };

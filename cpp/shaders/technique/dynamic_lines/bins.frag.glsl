@@ -10,7 +10,11 @@
 // LIMITS        widths that depend on the depth
 // LENS          other looks inside the lens
 // GATHERED      texels are samples of pixels from anywhere in the picture
-// IDS           1 + slot at the pixel's centre
+// IDS           1 + slot at the pixel's centre, whatever the flags above say
+#ifdef IDS
+#undef COVERAGE
+#undef UNION
+#endif
 #include "shared/position.glsl"
 #include "technique/dynamic_lines/bins_layout.h"
 #include "technique/dynamic_lines/line_looks.glsl"

@@ -8,7 +8,8 @@
 #ifndef DECALGL_BINS_LAYOUT_H
 #define DECALGL_BINS_LAYOUT_H
 
-#define TILE_SIDE 4  // pixels
+#define TILE_SIDE 4    // pixels
+#define BLOCK_TILES 8  // along a side of what is drawn or left out as one
 
 // What is left of a segment in a view.
 //     ends    on the map, relative to the base: from x, y; to x, y

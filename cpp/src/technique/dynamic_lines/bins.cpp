@@ -21,8 +21,8 @@ constexpr uint32_t most_counts = 1U << 23;
 
 // Pixels beyond its width that a segment is looked for: the ground that a pixel sees is not the ground under the line.
 // Jitters and the terrain's level of detail come to it.
-constexpr float slack_pixels = 1.0F;
-constexpr float slack_share = 0.25F;
+constexpr float slack_pixels = 2.0F;
+constexpr float slack_share = 0.5F;
 
 uint32_t divided(uint32_t count, uint32_t by) {
     return (count + by - 1) / by;

@@ -45,10 +45,16 @@ void LineBins::draw_tiles(gl::Flags flags, const GBufferView& gbuffer, const Lin
     gl::Program& program = programs.get(is_gathered ? "dynamic_bins_gathered" : "dynamic_bins", flags);
     program.use();
     bind(program, gbuffer, looks);
-    if (is_gathered)
-        gbuffer.set_gathered(program);
     no_vertices_.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    if (is_gathered) {
+        gbuffer.set_gathered(program);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+        return;
+    }
+    const glm::ivec2 blocks = (grid_ + BLOCK_TILES - 1) / BLOCK_TILES;
+    program.set("block_grid", blocks);
+    program.set("drawn_size", glm::ivec2(gbuffer.surface->width(), gbuffer.surface->height()));
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, blocks.x * blocks.y);
 }
 
 void LineBins::draw(const View& view, const GBufferView& gbuffer, const LineLooks& looks,

@@ -6,13 +6,6 @@
 #include "decalgl/terrain/heightfield.h"
 
 namespace decalgl {
-namespace {
-
-// Segments of a view up to which `automatic` takes lists.
-constexpr uint32_t most_listed = 0;
-
-}  // namespace
-
 std::unique_ptr<const Prepared> DynamicLines::preprocess(const TechniqueInput& input,
                                                          Progress& progress) const {
     return prepare_lines(input, progress);
@@ -48,8 +41,8 @@ void DynamicLines::upload(std::shared_ptr<const Prepared> prepared, std::shared_
     lens_ = std::move(next_lens);
 }
 
-// Lists have widths by the thesis's rule, and bins have coverage.
-LineMethod DynamicLines::method_for(const View& view, uint32_t segments) const {
+// Lists have widths by the thesis's rule. Bins have coverage, and were faster at every count that was measured.
+LineMethod DynamicLines::method_for(const View& view) const {
     const bool needs_bins = view.antialias == Antialias::coverage;
     const bool needs_lists = prepared_->width_rule == LineWidthRule::thesis;
     if (needs_bins && (needs_lists || prepared_->method == LineMethod::lists))
@@ -62,7 +55,7 @@ LineMethod DynamicLines::method_for(const View& view, uint32_t segments) const {
                     "dynamic lines: method 'bins' has no width_rule 'thesis'; choose method 'lists'");
     if (prepared_->method != LineMethod::automatic)
         return prepared_->method;
-    return needs_lists || (!needs_bins && segments <= most_listed) ? LineMethod::lists : LineMethod::bins;
+    return needs_lists ? LineMethod::lists : LineMethod::bins;
 }
 
 ListedLines DynamicLines::listed() const {
@@ -74,7 +67,7 @@ UpdateReport DynamicLines::update(const View& view) {
     report.pieces = lines_.segment_count;
     if (segments_) {
         const SegmentList& seen = segments_->run(view, looks_.reach(), programs_);
-        method_ = method_for(view, seen.most);
+        method_ = method_for(view);
         if (method_ == LineMethod::bins)
             bins_->update(view, lines_, seen, looks_, programs_);
         segments_->report(report);

@@ -27,7 +27,7 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
-    LineMethod method_for(const View& view, uint32_t segments) const;
+    LineMethod method_for(const View& view) const;
     ListedLines listed() const;
 
     gl::ProgramLibrary programs_;  // of upload and update
