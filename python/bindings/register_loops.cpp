@@ -94,6 +94,7 @@ void register_loops(py::module_& module) {
         .def_readwrite("eye", &DetailEye::eye)
         .def_readwrite("forward", &DetailEye::forward)
         .def_readwrite("pixels", &DetailEye::pixels)
+        .def_readwrite("corner", &DetailEye::corner)
         .def_readwrite("metres_per_pixel", &DetailEye::metres_per_pixel);
 
     py::class_<LoopsDetail>(module, "LoopsDetail")
@@ -122,7 +123,6 @@ void register_loops(py::module_& module) {
         .def_readwrite("primary_branching", &LoopsBvh::primary_branching)
         .def_readwrite("node_capacity", &LoopsBvh::node_capacity)
         .def_readwrite("largest_share", &LoopsBvh::largest_share)
-        .def_readwrite("summary", &LoopsBvh::summary)
         .def_readwrite("secondary_depths", &LoopsBvh::secondary_depths)
         .def_readwrite("secondary_branching", &LoopsBvh::secondary_branching)
         .def_readwrite("coverage_depth", &LoopsBvh::coverage_depth)

@@ -115,6 +115,7 @@ class DetailEye:
     eye: Sequence[float]
     forward: Sequence[float]
     pixels: float
+    corner: float
     metres_per_pixel: float
 
 class LoopsDetail:
@@ -134,7 +135,6 @@ class LoopsBvh:
     primary_branching: Sequence[int]
     node_capacity: int
     largest_share: float
-    summary: int
     secondary_depths: Sequence[int]
     secondary_branching: Sequence[int]
     coverage_depth: int

@@ -228,11 +228,11 @@ def test_details_by_distance_and_a_second_camera() -> None:
     np.testing.assert_array_equal(seen[distance < 30.0], full[distance < 30.0])
     assert (seen != full)[distance > 60.0].mean() > 0.02
     # What lies behind the camera is drawn in full, as nothing there can be off on its screen.
-    drawn.set_detail(layer, dg.Detail(screen=20.0, camera=corner, camera_height=100))
+    drawn.set_detail(layer, dg.Detail(screen=20.0, camera=corner, camera_size=(100, 100)))
     watched = drawn.render().ids
     assert (watched != full)[distance > 60.0].any()
     # The least of two bounds counts.
-    drawn.set_detail(layer, dg.Detail(screen=20.0, uniform=0.0, camera=corner, camera_height=100))
+    drawn.set_detail(layer, dg.Detail(screen=20.0, uniform=0.0, camera=corner, camera_size=(100, 100)))
     np.testing.assert_array_equal(drawn.render().ids, full)
 
 

@@ -41,6 +41,7 @@ DetailEye eye_of(const View& view) {
     }
     const auto step = double{glm::length(glm::vec3(block.ray_direction_dy))};
     eye.pixels = step > 0.0 ? 1.0 / step : 0.0;
+    eye.corner = 1.0 / std::hypot(1.0, 0.5 * step * std::hypot(double(view.width), double(view.height)));
     eye.metres_per_pixel = step > 0.0 ? 0.0 : double{glm::length(glm::vec3(block.ray_origin_dy))};
     return eye;
 }
@@ -215,9 +216,9 @@ void Loops::set_detail(gl::Program& program, const View& view) const {
                                          static_cast<float>(std::max(highest - lowest, 1e-6))));
     if (detail.screen >= 0.0) {
         const bool flat = eye.pixels == 0.0;
-        program.set("eye_forward",
-                    flat ? glm::vec3(0.0F) : glm::vec3(eye.forward[0], eye.forward[1], eye.forward[2]));
-        program.set("screen_bound", glm::vec2(flat ? 0.0F : static_cast<float>(detail.screen / eye.pixels),
+        program.set("eye_forward", glm::vec4(eye.forward[0], eye.forward[1], eye.forward[2],
+                                             std::hypot(eye.forward[0], eye.forward[1])));
+        program.set("screen_bound", glm::vec2(flat ? 0.0F : static_cast<float>(detail.screen * eye.corner / eye.pixels),
                                               static_cast<float>(detail.screen * eye.metres_per_pixel)));
     }
     if (!detail.steps.empty()) {

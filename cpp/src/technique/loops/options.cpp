@@ -23,7 +23,7 @@ bool is_branching(uint32_t children) {
 }
 
 auto tied(const DetailEye& eye) {
-    return std::tie(eye.eye, eye.forward, eye.pixels, eye.metres_per_pixel);
+    return std::tie(eye.eye, eye.forward, eye.pixels, eye.corner, eye.metres_per_pixel);
 }
 
 bool operator==(const DetailStep& a, const DetailStep& b) {
@@ -36,7 +36,7 @@ auto tied(const LoopsDetail& detail) {
 }
 
 auto tied(const LoopsBvh& bvh) {
-    return std::tie(bvh.primary_branching, bvh.node_capacity, bvh.largest_share, bvh.summary, bvh.secondary_depths, bvh.secondary_branching,
+    return std::tie(bvh.primary_branching, bvh.node_capacity, bvh.largest_share, bvh.secondary_depths, bvh.secondary_branching,
                     bvh.coverage_depth, bvh.minimum_coverage);
 }
 
@@ -68,7 +68,6 @@ void validate(const LoopsOptions& options) {
                 "bvh: a secondary tree's depth must be less than " + std::to_string(LOOPS_MOST_LISTS) +
                     " and have a branching for each of its levels, but one is " + std::to_string(depth));
     require(bvh.largest_share > 0.0 && bvh.largest_share <= 1.0, "bvh: largest_share must be above 0 and at most 1");
-    require(bvh.summary <= 4096, "bvh: summary must be from 0 to 4096");
     require(bvh.coverage_depth >= 1 && bvh.coverage_depth <= 4, "bvh: coverage_depth must be from 1 to 4");
     require(bvh.minimum_coverage > 0.0 && bvh.minimum_coverage <= 1.0,
             "bvh: minimum_coverage must be above 0 and at most 1");

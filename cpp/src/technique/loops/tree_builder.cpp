@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
-#include "technique/loops/half_float.h"
 
 namespace decalgl::loops {
 namespace {
@@ -62,85 +60,6 @@ struct Division {
     }
 };
 
-// What a node's walk may end with: the items that stay active longest, and a region that holds those of all the
-// others. Where that is not active, none of them is (activation.h).
-struct Summary {
-    Items kept;
-    uint32_t error_and_radius = 0;
-    uint32_t lowest_and_highest = 0;
-};
-
-class Summarizer {
-public:
-    Summarizer(const Shapes& shapes, uint32_t size) : shapes_(shapes), size_(size) {}
-
-    // Nothing is kept where the node holds little more, or nearly all of it is always active.
-    Summary summarize(const Items& items, const LatticeBox& box) const {
-        Summary summary;
-        const size_t most = std::min<size_t>(4 * size_t{size_}, items.size() / 2);
-        if (size_ == 0 || items.size() < 2 * size_t{size_})
-            return summary;
-        std::vector<double> weights(items.size());
-        for (size_t i = 0; i < items.size(); ++i)
-            weights[i] = weight_of(items[i]);
-        std::vector<double> sorted = weights;
-        const auto last_kept = sorted.begin() + static_cast<ptrdiff_t>(size_ - 1);
-        std::nth_element(sorted.begin(), last_kept, sorted.end(), std::greater<>());
-        // Of equal ones all go, or all stay where they always do.
-        const double least = *last_kept;
-        const bool stays = std::isinf(least);
-        for (size_t i = 0; i < items.size(); ++i)
-            if (weights[i] > least || (stays && weights[i] == least))
-                summary.kept.push_back(items[i]);
-        if (summary.kept.empty() || summary.kept.size() > most)
-            return {};
-        bound_others(items, weights, least, stays, box, summary);
-        return summary;
-    }
-
-    // Of the middle of a box, as the shaders find it.
-    static LatticePoint middle(const LatticeBox& box) {
-        return {static_cast<int32_t>(box.min_x + (int64_t{box.max_x} - box.min_x) / 2),
-                static_cast<int32_t>(box.min_y + (int64_t{box.max_y} - box.min_y) / 2)};
-    }
-
-private:
-    const Activation& activation_of(Item item) const {
-        return shapes_.hierarchy->activations[shapes_.generator_of(item)];
-    }
-    static double error_in(const Activation& a) { return half_to_double(static_cast<uint16_t>(a.error_and_radius)); }
-    static double radius_in(const Activation& a) {
-        return half_to_double(static_cast<uint16_t>(a.error_and_radius >> 16));
-    }
-
-    // Regions matter where they are much larger than what shows of their errors.
-    double weight_of(Item item) const {
-        const Activation& a = activation_of(item);
-        return std::max(error_in(a), 0.01 * radius_in(a));
-    }
-
-    void bound_others(const Items& items, const std::vector<double>& weights, double least, bool stays,
-                      const LatticeBox& box, Summary& summary) const {
-        double error = 0.0, radius = 0.0;
-        uint32_t lowest = 0xFFFF, highest = 0;
-        for (size_t i = 0; i < items.size(); ++i) {
-            if (weights[i] > least || (stays && weights[i] == least))
-                continue;
-            const Activation& a = activation_of(items[i]);
-            error = std::max(error, error_in(a));
-            radius = std::max(radius, radius_in(a) + length_scale * distance_between(middle(box), {a.x, a.y}));
-            lowest = std::min(lowest, a.lowest_and_highest & 0xFFFF);
-            highest = std::max(highest, a.lowest_and_highest >> 16);
-        }
-        // A little more, against the shaders' rounding.
-        summary.error_and_radius = half_not_below(error) | uint32_t{half_not_below(1.001 * radius)} << 16;
-        summary.lowest_and_highest = lowest | highest << 16;
-    }
-
-    const Shapes& shapes_;
-    uint32_t size_;
-};
-
 void write_list(Span<const Item> items, LargeArray<uint32_t>& words, TreeCounts& counts) {
     if (items.empty())
         return;
@@ -178,15 +97,6 @@ void write_leaf(bool has_list, LargeArray<uint32_t>& words, TreeCounts& counts) 
     words.push_back(0);
 }
 
-void write_divided(const Summary& summary, const Division& division, LargeArray<uint32_t>& words, TreeCounts& counts) {
-    write_node(!summary.kept.empty(), division, words, counts);
-    if (summary.kept.empty())
-        return;
-    words.push_back(summary.error_and_radius);
-    words.push_back(summary.lowest_and_highest);
-    write_list(summary.kept, words, counts);
-}
-
 class SubtreeBuilder {
 public:
     SubtreeBuilder(const Shapes& shapes, const LoopsBvh& settings, Tree& tree)
@@ -207,7 +117,7 @@ public:
         }
         const Division division(box, settings_.primary_branching[level]);
         const size_t children = parts.size();
-        write_divided(Summarizer(shapes_, settings_.summary).summarize(items, box), division, words_, counts_);
+        write_node(false, division, words_, counts_);
         items = Items();
         for (uint32_t i = 0; i < children; ++i)
             if (!parts[i].empty()) {
@@ -350,8 +260,7 @@ private:
         parallel_for(items.size(), grain, threads_, [&](size_t begin, size_t end) {
             blocks[begin / grain] = builder.distribute(Span<const Item>(items).subspan(begin, end - begin), division);
         });
-        const Summary summary = Summarizer(shapes_, settings_.summary).summarize(items, nodes_[place].box);
-        write_divided(summary, division, nodes_[place].subtree.words, nodes_[place].subtree.counts);
+        write_node(false, division, nodes_[place].subtree.words, nodes_[place].subtree.counts);
         nodes_[place].side = division.side;
         nodes_[place].children.assign(children, 0);
         for (uint32_t child = 0; child < children; ++child) {
@@ -403,16 +312,6 @@ private:
 };
 
 }  // namespace
-
-uint32_t Shapes::generator_of(Item item) const {
-    const Refinement& refinement = hierarchy->refinement;
-    const uint32_t p = item.primitive & LOOPS_POINT_MASK;
-    if ((item.primitive & EDGE_FLAG) != 0)
-        return (item.primitive & EDGE_FROM_NEXT) != 0 ? p + 1 : p;
-    if (half_widths[item.slot] == 0.0F)
-        return p;
-    return refinement.parents[p] == refinement.right[p] ? refinement.right[p] : refinement.left[p];
-}
 
 LatticeBox Shapes::box_around(Item item) const {
     const LargeArray<LatticePoint>& points = hierarchy->arcs.points;
