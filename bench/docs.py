@@ -20,7 +20,11 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "bench" / "results" / "latest.json"
-PAGES = (ROOT / "README.md", ROOT / "docs" / "techniques" / "static.md")
+PAGES = (
+    ROOT / "README.md",
+    ROOT / "docs" / "techniques" / "static.md",
+    ROOT / "docs" / "techniques" / "loops.md",
+)
 MARKED = re.compile(r"(<!-- bench:(\w+) -->\n).*?(<!-- /bench -->)", re.DOTALL)
 
 

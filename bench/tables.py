@@ -91,6 +91,34 @@ MODES = {
     "oblique": "{oblique[mode_ms]:.0f} ms",
     "oblique ÷ `none`": "{oblique[mode]:.2f}",
 }
+LOOPS_DRAWN = {
+    "drawn by": "{by}",
+    "primitives": "{loops_primitives:,.0f}",
+    "÷ segments": "{loops_seg_primitives:.2f}",
+    "references": "{loops_references:,.0f}",
+    "memory ÷ replica": "{loops_seg_bytes:.2f}",
+    "time ÷ replica": "{loops_seg_time:.2f}",
+}
+LOOPS_INDEXES = {
+    "index": "`{by}`",
+    "references": "{loops_references:,.0f}",
+    "memory ÷ constant": "{loops_constant_bytes:.2f}",
+    "time ÷ constant": "{loops_constant_time:.2f}",
+}
+LOOPS_DETAIL = {
+    **WHERE,
+    "half a pixel": "{half_ms:.1f} ms",
+    "÷ full detail": "{loops_detail:.2f}",
+    "÷ static": "{loops_static:.2f}",
+    "terrain": "{half_terrain_ms:.1f} ms",
+}
+LOOPS_PREPARED = {
+    "scene": "{scene}",
+    "segments": "{segments:,.0f}",
+    "preprocess": "{loops_prepare_ms:.0f} ms",
+    "P": "{loops_P:.0f}",
+    "bytes a segment": "{loops_bytes_per_segment:.0f}",
+}
 
 
 def summary(results: Results) -> str:
@@ -156,6 +184,22 @@ def styles(results: Results) -> str:
     return "\n\n".join([_table(drawn, STYLES), _table(modes, MODES), machine(results, "960 x 540")])
 
 
+def loops(results: Results) -> str:
+    """Tables 2 and figure 16 of the paper, levels of detail, and what preparing costs."""
+    found = [one for one in results["records"] if one["technique"].startswith("loops")]
+    if not found:
+        return "No figures yet."
+    named = [{**one, "by": one["technique"].removeprefix("loops ")} for one in found]
+    tables = (
+        ("loops_seg_time", LOOPS_DRAWN),
+        ("loops_constant_time", LOOPS_INDEXES),
+        ("loops_detail", LOOPS_DETAIL),
+        ("loops_P", LOOPS_PREPARED),
+    )
+    made = [_table([one for one in named if value in one], columns) for value, columns in tables]
+    return "\n\n".join([*made, machine(results)])
+
+
 BLOCKS: dict[str, Callable[[Results], str]] = {
     "summary": summary,
     "ratios": ratios,
@@ -163,6 +207,7 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "indexes": indexes,
     "extremes": extremes,
     "styles": styles,
+    "loops": loops,
 }
 
 

@@ -11,6 +11,7 @@ interior     interior: what does the inside of a large polygon cost?
 stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
+loops        loops_detail, loops_static, loops_seg_time, loops_constant_time ...: what do levels of detail save?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 """
 
@@ -24,6 +25,7 @@ from . import (
     interaction,
     interior,
     layers,
+    loops,
     memory,
     prepare,
     ring,
@@ -52,4 +54,5 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "ring": ring.measure,
     "interaction": interaction.measure,
     "styles": styles.measure,
+    "loops": loops.measure,
 }

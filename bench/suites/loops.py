@@ -66,16 +66,16 @@ def flight(work: Workload) -> list[dg.Camera]:
         if t < 0.25:
             cameras.append(dg.Camera.orbit((*middle, 0.0), wide * 1.5 * 0.05**part, 200, 45))
         elif t < 0.5:
-            place = middle + (wide * 0.4 * (part - 0.5), 0.0)
-            cameras.append(dg.Camera.orbit((*place, 0.0), wide * 0.075, 200, 45))
+            x, y = middle + (wide * 0.4 * (part - 0.5), 0.0)
+            cameras.append(dg.Camera.orbit((x, y, 0.0), wide * 0.075, 200, 45))
         elif t < 0.75:
             eye = (*middle, wide * 0.05)
             angle = 2.0 * np.pi * part
             target = (middle[0] + wide * np.sin(angle), middle[1] + wide * np.cos(angle), -0.25 * wide)
             cameras.append(dg.Camera.look_at(eye, target))
         else:
-            place = middle + (wide * 0.2 * part, wide * 0.2 * part)
-            cameras.append(dg.Camera.orbit((*place, 0.0), wide * 0.03, 45, 20))
+            x, y = middle + wide * 0.2 * part
+            cameras.append(dg.Camera.orbit((x, y, 0.0), wide * 0.03, 45, 20))
     return cameras
 
 
@@ -101,7 +101,9 @@ def _compare_detail(work: Workload, records: Records, kind: str, size: str) -> N
     views = {**{name: [camera] for name, camera in work.views.items()}, "flight": flight(work)}
     for view, cameras in views.items():
         times = interleaved(
-            work.runs_of(size), passes(static, cameras, "static"), passes(full, cameras, "full"),
+            work.runs_of(size),
+            passes(static, cameras, "static"),
+            passes(full, cameras, "full"),
             passes(half, cameras, "half"),
         )
         records.at(f"{kind} {size}", view, "loops").update(
@@ -146,7 +148,11 @@ def _drawn(work: Workload, scene: dg.Scene, cameras: list[dg.Camera]) -> Times:
     rounds = [measured() for _ in range(2)]
     counts = draw(renderer, cameras[0], "none").stats.counts
     held = {name: float(value) for name, value in counts.items() if name.startswith("loops_")}
-    return {**held, "loops_ms": statistics.median(each["loops_ms"] for each in rounds), "segments": counts["segments"]}
+    return {
+        **held,
+        "loops_ms": statistics.median(each["loops_ms"] for each in rounds),
+        "segments": counts["segments"],
+    }
 
 
 def _prepare(work: Workload, records: Records, kind: str, size: str) -> None:

@@ -13,16 +13,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
-import numpy as np
-
 from . import _core
-from .camera import Camera
 from .errors import InputError, close_matches
 from .techniques import Technique
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
+    from .camera import Camera
     from .features import FeatureTable
 
 ORDERS = ("douglas_peucker", "wang_mueller", "visvalingam_whyatt")
@@ -44,8 +43,8 @@ class Detail:
         them and constant beyond. Tolerances must not fall.
     lens: (x, y, radius), a circle on the map with the tolerance `lens_tolerance`, in metres.
     camera: whose distances and pixels count, None for the camera that draws; camera_size: of its pictures.
-    shows: "layers"; "tested" or "active" for a heat map of how many primitives each pixel looks at or finds active, dark
-        blue for none and red from `heat_top` on. Heat maps are drawn with antialias="none".
+    shows: "layers"; "tested" or "active" for a heat map of how many primitives each pixel looks at or finds active,
+        dark blue for none and red from `heat_top` on. Heat maps are drawn with antialias="none".
 
     Raises InputError for values out of range, and where no bound holds everywhere.
     """
@@ -124,7 +123,9 @@ class LoopsBvh:
             bvh.minimum_coverage = self.minimum_coverage
             bvh.largest_share = self.largest_share
         except TypeError:
-            raise InputError(f"LoopsBvh: numbers must be whole and zero or more, but this is {self!r}.") from None
+            raise InputError(
+                f"LoopsBvh: numbers must be whole and zero or more, but this is {self!r}."
+            ) from None
         return bvh
 
 
@@ -149,8 +150,8 @@ NAMED_BVHS: dict[str, LoopsBvh] = {
 class Loops(Technique):
     """Polygons and lines that lose their details where the view does not show them.
 
-    order: which vertices go first: "douglas_peucker", "wang_mueller", "visvalingam_whyatt", or a function that takes the
-        vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): all of 1 to n - 2, the first to go
+    order: which vertices go first: "douglas_peucker", "wang_mueller", "visvalingam_whyatt", or a function that takes
+        the vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): all of 1 to n - 2, the first to go
         first, with the metres that each removal is off by.
     primitives: of lines and outlines, "tri" (refinement triangles) or "seg" (the segments of all levels).
     bvh: "fitted" (chosen from the data), one of the paper's table 1 by its name, or a `LoopsBvh`.

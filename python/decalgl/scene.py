@@ -174,8 +174,8 @@ class Scene:
         outline: an `Outline`.
         order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
             missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
-        technique: who draws the layer: "auto", "static" or a `Technique` (`decalgl.techniques`). Neighbouring layers of
-            one technique are one pass; between passes only colour and coverage are known.
+        technique: who draws the layer: "auto", "static", "loops" or a `Technique` (`decalgl.techniques`). Neighbouring
+            layers of one technique are one pass; between passes only colour and coverage are known.
 
         Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """

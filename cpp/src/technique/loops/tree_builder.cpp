@@ -111,7 +111,8 @@ public:
         if (!is_worth_it(items, parts)) {
             parts.clear();
             write_leaf(true, words_, counts_);
-            const size_t depth = level < settings_.secondary_depths.size() ? settings_.secondary_depths[level] : 0;
+            const size_t depth =
+                level < settings_.secondary_depths.size() ? settings_.secondary_depths[level] : 0;
             secondary(std::move(items), box, 0, depth, 0);
             return node;
         }
@@ -139,7 +140,8 @@ private:
         size_t held = 0;
         for (const Items& part : parts)
             held += part.size();
-        return !parts.empty() && double(held) <= settings_.largest_share * double(parts.size()) * double(items.size());
+        return !parts.empty() &&
+               double(held) <= settings_.largest_share * double(parts.size()) * double(items.size());
     }
 
     template <typename Visit>
@@ -173,7 +175,8 @@ private:
             kept = std::move(items);
         }
         items = Items();
-        const bool divided = std::any_of(parts.begin(), parts.end(), [](const Items& part) { return !part.empty(); });
+        const bool divided =
+            std::any_of(parts.begin(), parts.end(), [](const Items& part) { return !part.empty(); });
         if (divided)
             write_node(!kept.empty(), Division(box, settings_.secondary_branching[level]), words_, counts_);
         else
@@ -186,7 +189,8 @@ private:
         const Division division(box, settings_.secondary_branching[level]);
         for (uint32_t i = 0; i < parts.size(); ++i)
             if (!parts[i].empty()) {
-                const size_t child = secondary(std::move(parts[i]), division.child(i), level + 1, depth, walk);
+                const size_t child =
+                    secondary(std::move(parts[i]), division.child(i), level + 1, depth, walk);
                 words_[node + NODE_WORDS + i] = static_cast<uint32_t>(child - node);
             }
         return node;
@@ -208,7 +212,8 @@ private:
             return;
         }
         const Division division(box, settings_.secondary_branching[level]);
-        each_child(item, division, [&](uint32_t child) { count_met(item, division.child(child), level + 1, end, met); });
+        each_child(item, division,
+                   [&](uint32_t child) { count_met(item, division.child(child), level + 1, end, met); });
     }
 
     const Shapes& shapes_;
@@ -239,12 +244,15 @@ public:
             if (nodes_[i].items.size() > portion && nodes_[i].level < settings_.primary_branching.size() &&
                 nodes_[i].items.size() > settings_.node_capacity)
                 divide(i);
-        parallel_for(nodes_.size(), 1, threads_, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i)
-                if (nodes_[i].side == 0)
-                    SubtreeBuilder(shapes_, settings_, nodes_[i].subtree)
-                        .primary(std::move(nodes_[i].items), nodes_[i].box, nodes_[i].level);
-        }, [&](double share) { progress.report(0.75 + 0.25 * share); });
+        parallel_for(
+            nodes_.size(), 1, threads_,
+            [&](size_t begin, size_t end) {
+                for (size_t i = begin; i < end; ++i)
+                    if (nodes_[i].side == 0)
+                        SubtreeBuilder(shapes_, settings_, nodes_[i].subtree)
+                            .primary(std::move(nodes_[i].items), nodes_[i].box, nodes_[i].level);
+            },
+            [&](double share) { progress.report(0.75 + 0.25 * share); });
         return assemble(charge);
     }
 
@@ -258,7 +266,8 @@ private:
         Tree unused;
         const SubtreeBuilder builder(shapes_, settings_, unused);
         parallel_for(items.size(), grain, threads_, [&](size_t begin, size_t end) {
-            blocks[begin / grain] = builder.distribute(Span<const Item>(items).subspan(begin, end - begin), division);
+            blocks[begin / grain] =
+                builder.distribute(Span<const Item>(items).subspan(begin, end - begin), division);
         });
         write_node(false, division, nodes_[place].subtree.words, nodes_[place].subtree.counts);
         nodes_[place].side = division.side;
@@ -288,9 +297,10 @@ private:
             tree.counts.longest_walk = std::max(tree.counts.longest_walk, counts.longest_walk);
         }
         if (total > most_words)
-            throw Error(ErrorKind::memory,
-                        "the index of technique 'loops' would take " + format_bytes(4 * total) +
-                            ", more than a shader can read; choose a bvh with less depth or branching, or fewer features");
+            throw Error(ErrorKind::memory, "the index of technique 'loops' would take " +
+                                               format_bytes(4 * total) +
+                                               ", more than a shader can read; choose a bvh with less depth "
+                                               "or branching, or fewer features");
         charge.resize(charge.bytes() + 4 * total);
         tree.words.resize(total);
         for (size_t i = 0; i < nodes_.size(); ++i) {
@@ -340,7 +350,9 @@ bool Shapes::meets(Item item, const LatticeBox& box) const {
     const uint32_t left = refinement.left[p], right = refinement.right[p];
     if (reach == 0)
         return may_meet(points[left], points[p], points[right], 0, box);
-    const auto side_meets = [&](uint32_t a, uint32_t b) { return may_meet(points[a], points[b], points[b], reach, box); };
+    const auto side_meets = [&](uint32_t a, uint32_t b) {
+        return may_meet(points[a], points[b], points[b], reach, box);
+    };
     if (side_meets(left, right))
         return true;
     // Of the triangle's sides those that are drawn with it.
