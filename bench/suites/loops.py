@@ -66,7 +66,7 @@ def flight(work: Workload) -> list[dg.Camera]:
         if t < 0.25:
             cameras.append(dg.Camera.orbit((*middle, 0.0), wide * 1.5 * 0.05**part, 200, 45))
         elif t < 0.5:
-            x, y = middle + (wide * 0.4 * (part - 0.5), 0.0)
+            x, y = middle[0] + wide * 0.4 * (part - 0.5), middle[1]
             cameras.append(dg.Camera.orbit((x, y, 0.0), wide * 0.075, 200, 45))
         elif t < 0.75:
             eye = (*middle, wide * 0.05)

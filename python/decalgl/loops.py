@@ -151,7 +151,7 @@ class Loops(Technique):
     """Polygons and lines that lose their details where the view does not show them.
 
     order: which vertices go first: "douglas_peucker", "wang_mueller", "visvalingam_whyatt", or a function that takes
-        the vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): all of 1 to n - 2, the first to go
+        the vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): 1 to n - 2, the first to go
         first, with the metres that each removal is off by.
     primitives: of lines and outlines, "tri" (refinement triangles) or "seg" (the segments of all levels).
     bvh: "fitted" (chosen from the data), one of the paper's table 1 by its name, or a `LoopsBvh`.
