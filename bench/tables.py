@@ -100,6 +100,34 @@ MODES = {
     "oblique": "{oblique[mode_ms]:.0f} ms",
     "oblique ÷ `none`": "{oblique[mode]:.2f}",
 }
+LOOPS_DRAWN = {
+    "drawn by": "{by}",
+    "primitives": "{loops_primitives:,.0f}",
+    "÷ segments": "{loops_seg_primitives:.2f}",
+    "references": "{loops_references:,.0f}",
+    "memory ÷ replica": "{loops_seg_bytes:.2f}",
+    "time ÷ replica": "{loops_seg_time:.2f}",
+}
+LOOPS_INDEXES = {
+    "index": "`{by}`",
+    "references": "{loops_references:,.0f}",
+    "memory ÷ constant": "{loops_constant_bytes:.2f}",
+    "time ÷ constant": "{loops_constant_time:.2f}",
+}
+LOOPS_DETAIL = {
+    **WHERE,
+    "half a pixel": "{half_ms:.1f} ms",
+    "÷ full detail": "{loops_detail:.2f}",
+    "÷ static": "{loops_static:.2f}",
+    "terrain": "{half_terrain_ms:.1f} ms",
+}
+LOOPS_PREPARED = {
+    "scene": "{scene}",
+    "segments": "{segments:,.0f}",
+    "preprocess": "{loops_prepare_ms:.0f} ms",
+    "P": "{loops_P:.0f}",
+    "bytes a segment": "{loops_bytes_per_segment:.0f}",
+}
 
 NETWORKS = {
     "roads": "{town}",
@@ -183,6 +211,7 @@ def styles(results: Results) -> str:
     return "\n\n".join([_table(drawn, STYLES), _table(modes, MODES), machine(results, "960 x 540")])
 
 
+<<<<<<< HEAD
 def changes(results: Results) -> str:
     """What changes of a map take, in frames of the view of all of it."""
     return "\n\n".join([_table(_having(results, "restyle"), CHANGES), machine(results)])
@@ -198,6 +227,22 @@ def networks(results: Results) -> str:
         return "No figures yet."
     fields = _having(results, "field_memory", techniques=("distance_field",))
     return "\n\n".join([_table(list(drawn.values()), NETWORKS), _table(fields, FIELDS)])
+=======
+def loops(results: Results) -> str:
+    """Tables 2 and figure 16 of the paper, levels of detail, and what preparing costs."""
+    found = [one for one in results["records"] if one["technique"].startswith("loops")]
+    if not found:
+        return "No figures yet."
+    named = [{**one, "by": one["technique"].removeprefix("loops ")} for one in found]
+    tables = (
+        ("loops_seg_time", LOOPS_DRAWN),
+        ("loops_constant_time", LOOPS_INDEXES),
+        ("loops_detail", LOOPS_DETAIL),
+        ("loops_P", LOOPS_PREPARED),
+    )
+    made = [_table([one for one in named if value in one], columns) for value, columns in tables]
+    return "\n\n".join([*made, machine(results)])
+>>>>>>> loops
 
 
 BLOCKS: dict[str, Callable[[Results], str]] = {
@@ -207,8 +252,12 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "indexes": indexes,
     "extremes": extremes,
     "styles": styles,
+<<<<<<< HEAD
     "changes": changes,
     "networks": networks,
+=======
+    "loops": loops,
+>>>>>>> loops
 }
 
 

@@ -80,7 +80,9 @@ def _scene(entry: Entry) -> dg.Scene:
     areas, lines = _data()
     scene.add_polygons(areas, column="material", cmap=honolulu.PALETTE, technique=entry.polygons)
     width, units = (2.0, "px") if entry.pixels else (20.0, "m")
-    scene.add_lines(lines, color=honolulu.ISOLINE_COLOR, width=width, width_units=units, technique=entry.lines)
+    scene.add_lines(
+        lines, color=honolulu.ISOLINE_COLOR, width=width, width_units=units, technique=entry.lines
+    )
     return scene
 
 

@@ -45,8 +45,9 @@ RemovalFunction removal_function(const py::function& given) {
         const auto answer = (*kept)(points).cast<std::pair<Array<int64_t>, Array<double>>>();
         std::vector<Removal> order;
         for (py::ssize_t i = 0; i < std::min(answer.first.size(), answer.second.size()); ++i)
-            order.push_back({static_cast<uint32_t>(std::clamp<int64_t>(answer.first.data()[i], 0, UINT32_MAX)),
-                             answer.second.data()[i]});
+            order.push_back(
+                {static_cast<uint32_t>(std::clamp<int64_t>(answer.first.data()[i], 0, UINT32_MAX)),
+                 answer.second.data()[i]});
         return order;
     };
 }
@@ -61,7 +62,9 @@ LoopsDetail::Shows shows_named(const std::string& name) {
 py::list simplified(bool polygons, const Array<double>& coordinates, const Array<int64_t>& part_offsets,
                     const Array<int64_t>& feature_offsets, const std::array<double, 4>& corners,
                     const std::vector<double>& tolerances, const LoopsChoice& choice) {
-    const auto vector_of = [](const auto& array) { return std::vector(array.data(), array.data() + array.size()); };
+    const auto vector_of = [](const auto& array) {
+        return std::vector(array.data(), array.data() + array.size());
+    };
     const FeatureKind kind = polygons ? FeatureKind::polygons : FeatureKind::lines;
     const Bounds bounds{corners[0], corners[1], corners[2], corners[3]};
     Layer layer;
@@ -94,6 +97,7 @@ void register_loops(py::module_& module) {
         .def_readwrite("eye", &DetailEye::eye)
         .def_readwrite("forward", &DetailEye::forward)
         .def_readwrite("pixels", &DetailEye::pixels)
+        .def_readwrite("corner", &DetailEye::corner)
         .def_readwrite("metres_per_pixel", &DetailEye::metres_per_pixel);
 
     py::class_<LoopsDetail>(module, "LoopsDetail")
@@ -115,21 +119,22 @@ void register_loops(py::module_& module) {
                  detail.has_eye = true;
                  detail.eye = eye;
              })
-        .def("set_shows", [](LoopsDetail& detail, const std::string& name) { detail.shows = shows_named(name); });
+        .def("set_shows",
+             [](LoopsDetail& detail, const std::string& name) { detail.shows = shows_named(name); });
 
     py::class_<LoopsBvh>(module, "LoopsBvh")
         .def(py::init<>())
         .def_readwrite("primary_branching", &LoopsBvh::primary_branching)
         .def_readwrite("node_capacity", &LoopsBvh::node_capacity)
         .def_readwrite("largest_share", &LoopsBvh::largest_share)
-        .def_readwrite("summary", &LoopsBvh::summary)
         .def_readwrite("secondary_depths", &LoopsBvh::secondary_depths)
         .def_readwrite("secondary_branching", &LoopsBvh::secondary_branching)
         .def_readwrite("coverage_depth", &LoopsBvh::coverage_depth)
         .def_readwrite("minimum_coverage", &LoopsBvh::minimum_coverage);
 
     py::class_<LoopsChoice, TechniqueOptions, std::shared_ptr<LoopsChoice>>(module, "LoopsChoice")
-        .def(py::init([](const py::object& order, bool segments, const LoopsBvh& bvh, const LoopsDetail& detail) {
+        .def(py::init([](const py::object& order, bool segments, const LoopsBvh& bvh,
+                         const LoopsDetail& detail) {
                  LoopsChoice choice;
                  if (py::isinstance<py::str>(order)) {
                      choice.options.order = order_named(order.cast<std::string>());

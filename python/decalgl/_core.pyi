@@ -118,6 +118,7 @@ class DetailEye:
     eye: Sequence[float]
     forward: Sequence[float]
     pixels: float
+    corner: float
     metres_per_pixel: float
 
 class LoopsDetail:
@@ -137,7 +138,6 @@ class LoopsBvh:
     primary_branching: Sequence[int]
     node_capacity: int
     largest_share: float
-    summary: int
     secondary_depths: Sequence[int]
     secondary_branching: Sequence[int]
     coverage_depth: int
@@ -181,6 +181,7 @@ class VolumeOptions(TechniqueOptions):
 
 class DynamicOptions(TechniqueOptions):
     def __init__(self, method: str, width_rule: str, cell: float) -> None: ...
+
 class NetworkStyle:
     lod: float
     width: float

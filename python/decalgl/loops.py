@@ -13,16 +13,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
-import numpy as np
-
 from . import _core
-from .camera import Camera
 from .errors import InputError, close_matches
 from .techniques import Technique
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
+    from .camera import Camera
     from .features import FeatureTable
 
 ORDERS = ("douglas_peucker", "wang_mueller", "visvalingam_whyatt")
@@ -43,10 +42,9 @@ class Detail:
     by_distance: ((distance, tolerance), ...), metres, up to 8 pairs from the nearest to the farthest; linear between
         them and constant beyond. Tolerances must not fall.
     lens: (x, y, radius), a circle on the map with the tolerance `lens_tolerance`, in metres.
-    camera: whose distances and pixels count, None for the camera that draws; camera_height: pixels of its
-        pictures' height.
-    shows: "layers"; "tested" or "active" for a heat map of how many primitives each pixel looks at or finds active, dark
-        blue for none and red from `heat_top` on. Heat maps are drawn with antialias="none".
+    camera: whose distances and pixels count, None for the camera that draws; camera_size: of its pictures.
+    shows: "layers"; "tested" or "active" for a heat map of how many primitives each pixel looks at or finds active,
+        dark blue for none and red from `heat_top` on. Heat maps are drawn with antialias="none".
 
     Raises InputError for values out of range, and where no bound holds everywhere.
     """
@@ -57,7 +55,7 @@ class Detail:
     lens: tuple[float, float, float] | None = None
     lens_tolerance: float = 0.0
     camera: Camera | None = None
-    camera_height: int = 1080
+    camera_size: tuple[int, int] = (1920, 1080)
     shows: str = "layers"
     heat_top: float = 64.0
 
@@ -66,7 +64,7 @@ class Detail:
             value = getattr(self, name)
             if value is not None and not (_is_number(value) and value >= 0.0):
                 raise InputError(f"Detail: {name} must be zero or more, or None, but it is {value!r}.")
-        for name in ("lens_tolerance", "heat_top", "camera_height"):
+        for name in ("lens_tolerance", "heat_top"):
             value = getattr(self, name)
             if not (_is_number(value) and value >= 0.0):
                 raise InputError(f"Detail: {name} must be a number of zero or more, but it is {value!r}.")
@@ -85,7 +83,7 @@ class Detail:
             detail.lens_centre = (float(self.lens[0]), float(self.lens[1]))
             detail.lens_radius = float(self.lens[2])
         if self.camera is not None:
-            detail.set_eye(_core_eye(self.camera, self.camera_height))
+            detail.set_eye(_core_eye(self.camera, self.camera_size))
         detail.set_shows(self.shows)
         detail.heat_top = self.heat_top
         return detail
@@ -103,8 +101,6 @@ class LoopsBvh:
     minimum_coverage: the share of the nodes there that a primitive meets, from which on it stays in the node.
     largest_share: of a primary node's primitives that its children may hold on average; else it is not divided, as
         where wide lines lie all over it. The paper divides always: 1.
-    summary: how many primitives a divided primary node keeps, those that are active longest. Where no others are, a walk
-        ends with them. The paper has none: 0.
     """
 
     primary_branching: tuple[int, ...] = ()
@@ -114,7 +110,6 @@ class LoopsBvh:
     coverage_depth: int = 2
     minimum_coverage: float = 1.0
     largest_share: float = 1.0
-    summary: int = 0
 
     def core(self) -> _core.LoopsBvh:
         """As the core takes it. Raises InputError."""
@@ -127,7 +122,6 @@ class LoopsBvh:
             bvh.coverage_depth = self.coverage_depth
             bvh.minimum_coverage = self.minimum_coverage
             bvh.largest_share = self.largest_share
-            bvh.summary = self.summary
         except TypeError:
             raise InputError(
                 f"LoopsBvh: numbers must be whole and zero or more, but this is {self!r}."
@@ -137,7 +131,7 @@ class LoopsBvh:
 
 # Table 1 of the paper. Its "replica" of LOCALIS divides the primary root whatever it holds.
 NAMED_BVHS: dict[str, LoopsBvh] = {
-    "fitted": LoopsBvh(node_capacity=24, largest_share=0.25, summary=48),
+    "fitted": LoopsBvh(node_capacity=24, largest_share=0.25),
     "replica": LoopsBvh((16,), 0, (0, 10), (4,) * 10),
     "constant": LoopsBvh((100,) * 4),
     "descending": LoopsBvh((576, 256, 100, 36)),
@@ -156,8 +150,8 @@ NAMED_BVHS: dict[str, LoopsBvh] = {
 class Loops(Technique):
     """Polygons and lines that lose their details where the view does not show them.
 
-    order: which vertices go first: "douglas_peucker", "wang_mueller", "visvalingam_whyatt", or a function that takes the
-        vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): all of 1 to n - 2, the first to go
+    order: which vertices go first: "douglas_peucker", "wang_mueller", "visvalingam_whyatt", or a function that takes
+        the vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): 1 to n - 2, the first to go
         first, with the metres that each removal is off by.
     primitives: of lines and outlines, "tri" (refinement triangles) or "seg" (the segments of all levels).
     bvh: "fitted" (chosen from the data), one of the paper's table 1 by its name, or a `LoopsBvh`.
@@ -218,8 +212,9 @@ class Loops(Technique):
         ]
 
 
-def _core_eye(camera: Camera, height: int) -> _core.DetailEye:
-    fitted = camera.for_size((height, height))
+def _core_eye(camera: Camera, size: tuple[int, int]) -> _core.DetailEye:
+    fitted = camera.for_size(size)
+    width, height = size
     eye = _core.DetailEye()
     eye.eye = fitted.eye
     eye.forward = tuple(map(float, fitted.basis()[2]))
@@ -227,6 +222,7 @@ def _core_eye(camera: Camera, height: int) -> _core.DetailEye:
         eye.metres_per_pixel = (fitted.view_height or 0.0) / height
     else:
         eye.pixels = 0.5 * height / math.tan(math.radians(0.5 * fitted.fov))
+        eye.corner = 1.0 / math.hypot(1.0, 0.5 * math.hypot(width, height) / eye.pixels)
     return eye
 
 

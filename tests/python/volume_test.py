@@ -56,7 +56,9 @@ def test_ids_are_those_of_the_reference(name: str) -> None:
     seen = judge.own_surface(view, frame)
     points = judge.centres_of(view)
     surface = ref.Surface(seen.world.reshape(-1, 3), seen.depth.reshape(-1), seen.gradient.reshape(-1, 2))
-    allowed = NEAR * judge.footprint(view, points, surface).reshape(frame.ids.shape) + SAGITTA * widest(view.scene)
+    allowed = NEAR * judge.footprint(view, points, surface).reshape(frame.ids.shape) + SAGITTA * widest(
+        view.scene
+    )
     found = judge.judge_ids(view, frame, seen, allowed)
     assert found.far == 0, found
     assert found.wrong <= 60, found
@@ -255,7 +257,9 @@ def _odd_rings(parts: list[FloatArray]) -> float:
 )
 def test_styles_that_volumes_cannot_show_are_refused(looks: dict[str, Any], what: str) -> None:
     scene = flat_scene()
-    scene.add_lines([LineString([(0, 0), (90, 90)])], width=4, width_units="m", name="way", technique=VOLUME, **looks)
+    scene.add_lines(
+        [LineString([(0, 0), (90, 90)])], width=4, width_units="m", name="way", technique=VOLUME, **looks
+    )
     with pytest.raises(dg.UnsupportedError, match=rf"'way'.*{what}"):
         draw(scene)
 

@@ -108,7 +108,8 @@ bool cross(const Edge& e, const Edge& f) {
         return true;
     // An end of one inside the other.
     const auto inside = [](const Edge& edge, LatticePoint p) {
-        return p != edge.a && p != edge.b && turn_of(edge.a, edge.b, p) == 0 && triangle_holds(edge.a, edge.b, edge.b, p);
+        return p != edge.a && p != edge.b && turn_of(edge.a, edge.b, p) == 0 &&
+               triangle_holds(edge.a, edge.b, edge.b, p);
     };
     return inside(e, f.a) || inside(e, f.b) || inside(f, e.a) || inside(f, e.b);
 }
@@ -122,7 +123,8 @@ struct Tolerance {
     bool activates(const Hierarchy& h, uint32_t point) const {
         const Activation& a = h.activations[point];
         const double error = h.error_of(point);
-        const double region = half_to_double(uint16_t(a.error_and_radius >> 16)) / length_scale * h.lattice.quantum;
+        const double region =
+            half_to_double(uint16_t(a.error_and_radius >> 16)) / length_scale * h.lattice.quantum;
         const double distance = std::hypot(h.lattice.x_of({a.x, a.y}) - x, h.lattice.y_of({a.x, a.y}) - y);
         const bool in_lens = radius >= 0.0 && distance - region < radius;
         return error > (in_lens ? std::min(lens, everywhere) : everywhere);
@@ -244,7 +246,8 @@ TEST_CASE("borders that neighbours share are simplified once", "[loops]") {
         }
         for (const auto& edge : edges) {
             const bool outer = std::all_of(edge.first.begin(), edge.first.end(), [](const auto& p) {
-                return p.first < 120.0 || p.second < 120.0 || p.first > side - 120.0 || p.second > side - 120.0;
+                return p.first < 120.0 || p.second < 120.0 || p.first > side - 120.0 ||
+                       p.second > side - 120.0;
             });
             REQUIRE((edge.second == 2 || (outer && edge.second == 1)));
         }
@@ -279,9 +282,10 @@ TEST_CASE("errors of Douglas and Peucker bound the distance", "[loops]") {
             double nearest = 1e9;
             for (size_t a = 0, n = left.size() / 2; a < n; ++a) {
                 const size_t b = (a + 1) % n;
-                nearest = std::min(nearest, distance_to_segment(h.lattice.nearest(ring[i], ring[i + 1]),
-                                                                h.lattice.nearest(left[2 * a], left[2 * a + 1]),
-                                                                h.lattice.nearest(left[2 * b], left[2 * b + 1])));
+                nearest =
+                    std::min(nearest, distance_to_segment(h.lattice.nearest(ring[i], ring[i + 1]),
+                                                          h.lattice.nearest(left[2 * a], left[2 * a + 1]),
+                                                          h.lattice.nearest(left[2 * b], left[2 * b + 1])));
             }
             REQUIRE(nearest * h.lattice.quantum <= tolerance + 1e-3);
         }
@@ -294,7 +298,7 @@ TEST_CASE("orders name each vertex once, whatever the arc", "[loops]") {
     for (int i = 0; i < 2000; ++i) {
         std::vector<LatticePoint> arc(2 + random() % 40);
         for (LatticePoint& p : arc)
-            p = i % 3 == 0 ? LatticePoint{near(random), near(random)}
+            p = i % 3 == 0   ? LatticePoint{near(random), near(random)}
                 : i % 3 == 1 ? LatticePoint{near(random), 0}  // collinear, to and fro
                              : LatticePoint{far(random), far(random)};
         for (const auto order_by : {order_douglas_peucker, order_wang_mueller, order_visvalingam_whyatt}) {
@@ -334,8 +338,14 @@ TEST_CASE("bad rings are no trouble", "[loops]") {
     std::vector<double> collinear;
     for (int i = 0; i < 5000; ++i)
         collinear.insert(collinear.end(), {0.1 * i, 700.0});
-    const Layer layer = layer_of(FeatureKind::polygons, {bow, spike, collinear, {1, 1, 1, 1, 1, 1}, {5, 5, 9, 9}, {},
-                                                         {-1e12, -1e12, 1e12, -1e12, 0, 1e12}, bow});
+    const Layer layer = layer_of(FeatureKind::polygons, {bow,
+                                                         spike,
+                                                         collinear,
+                                                         {1, 1, 1, 1, 1, 1},
+                                                         {5, 5, 9, 9},
+                                                         {},
+                                                         {-1e12, -1e12, 1e12, -1e12, 0, 1e12},
+                                                         bow});
     const Hierarchy h = hierarchy_of(layer);
     std::mt19937 random(3);
     for (const Tolerance& tolerance : tolerances(random))

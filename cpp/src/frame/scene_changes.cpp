@@ -138,8 +138,9 @@ std::shared_ptr<const PreparedScene> tuned_scene(const PreparedScene& scene, uin
             continue;
         pass.prepared = pass.prepared->tuned(options);
         if (!pass.prepared)
-            throw Error(ErrorKind::unsupported, "layer '" + scene.layers[layer].name + "' is drawn by technique '" +
-                                                    pass.technique + "', which has nothing like that to change");
+            throw Error(ErrorKind::unsupported, "layer '" + scene.layers[layer].name +
+                                                    "' is drawn by technique '" + pass.technique +
+                                                    "', which has nothing like that to change");
     }
     return changed;
 }

@@ -13,6 +13,7 @@ struct DetailEye {
     std::array<double, 3> eye{};
     std::array<double, 3> forward{};  // unit vector
     double pixels = 0.0;              // of the picture's height, for a metre one metre ahead; 0: orthographic
+    double corner = 1.0;              // cosine of the angle between the picture's corners and its middle
     double metres_per_pixel = 0.0;    // orthographic
 };
 

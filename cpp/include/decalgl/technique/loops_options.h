@@ -34,12 +34,13 @@ enum class LinePrimitives : uint8_t { triangles, segments };
 struct LoopsBvh {
     std::vector<uint32_t> primary_branching;  // empty: chosen from the data
     uint32_t node_capacity = 45;              // primitives in a primary node that is not divided
-    uint32_t summary = 0;  // primitives that a divided primary node keeps, where nothing else is active; 0: none
-    double largest_share = 1.0;  // of its primitives that children may hold on average for a primary node to be divided
-    std::vector<uint32_t> secondary_depths;   // by the level of the primary leaf; beyond the last: 0
+    double largest_share =
+        1.0;  // of its primitives that children may hold on average for a primary node to be divided
+    std::vector<uint32_t> secondary_depths;  // by the level of the primary leaf; beyond the last: 0
     std::vector<uint32_t> secondary_branching;
     uint32_t coverage_depth = 2;
-    double minimum_coverage = 1.0;  // share of the nodes below that a primitive covers where it stays in a node
+    double minimum_coverage =
+        1.0;  // share of the nodes below that a primitive covers where it stays in a node
 };
 
 // Layers of equal options are prepared together; two functions are never equal.

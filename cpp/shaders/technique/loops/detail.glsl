@@ -5,8 +5,8 @@
 //           ______ \______               tolerance everywhere in it. Regions of parents hold those of their
 //          |       ..     | highest      children, so their bounds are no greater, and no child is active alone.
 //          |______________| lowest
+#include "technique/loops/lists.glsl"
 
-uniform float quantum;        // metres
 uniform float length_scale;   // metres of a length of 1
 uniform float uniform_bound;  // metres
 #if defined(SCREEN) || defined(BY_DISTANCE)
@@ -15,8 +15,8 @@ uniform vec2 eye_rest;
 uniform vec2 eye_heights;  // of the lowest ground above the eye; up to the highest
 #endif
 #ifdef SCREEN
-uniform vec3 eye_forward;   // 0: orthographic
-uniform vec2 screen_bound;  // metres one metre ahead; anywhere
+uniform vec4 eye_forward;   // w: its length on the map
+uniform vec2 screen_bound;  // metres a metre of depth; anywhere
 #endif
 #ifdef BY_DISTANCE
 const int most_steps = 8;
@@ -32,17 +32,17 @@ float tolerance_in(ivec2 proxy, float radius, vec2 heights) {
     float bound = uniform_bound;
 #if defined(SCREEN) || defined(BY_DISTANCE)
     vec2 away = vec2(proxy - eye_place) * quantum - eye_rest;
-    float beside = length(away);
     vec2 levels = eye_heights.x + heights * eye_heights.y;
 #endif
 #ifdef SCREEN
-    // A metre shows as at most r / z^2 times what it does one metre ahead, at the distance r and the depth z.
+    // Of what is in the picture, a metre shows as at most 1 / (z cos a) of what it does one metre ahead, at the depth z
+    // and the angle a of the picture's corners from its middle.
     vec2 along = eye_forward.z * levels;
-    float depth = max(0.0, dot(eye_forward.xy, away) - length(eye_forward.xy) * radius + min(along.x, along.y));
-    float farthest = length(vec2(beside + radius, max(abs(levels.x), abs(levels.y))));
-    bound = min(bound, screen_bound.x * depth * depth / max(farthest, 1e-30) + screen_bound.y);
+    float depth = dot(eye_forward.xy, away) - eye_forward.w * radius + min(along.x, along.y);
+    bound = min(bound, screen_bound.x * max(depth, 0.0) + screen_bound.y);
 #endif
 #ifdef BY_DISTANCE
+    float beside = length(away);
     float nearest = length(vec2(max(beside - radius, 0.0), max(0.0, max(levels.x, -levels.y))));
     float stepped = detail_steps[0].y;
     for (int i = 1; i < most_steps; ++i) {

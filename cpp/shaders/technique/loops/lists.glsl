@@ -1,13 +1,13 @@
 // From a map position to the lists of what may cover it: down the primary tree to a leaf, and along a path of its
 // secondary tree (loops_layout.h).
 #include "shared/position.glsl"
-#include "technique/loops/detail.glsl"
 #include "technique/loops/loops_layout.h"
 
 uniform usamplerBuffer loops_nodes;
 uniform ivec4 root_box;     // of the terrain, in quanta
 uniform ivec2 first_block;  // the lattice begins at its corner
 uniform int block_shift;    // a block is 2^block_shift quanta
+uniform float quantum;      // metres
 
 // Beyond the lattice, and little enough for sums of 32 bits.
 const float farthest = 1e9;
@@ -60,23 +60,11 @@ int child_at(int node, int side, ivec2 point, inout ivec4 box) {
     return step == 0u ? -1 : node + int(step);
 }
 
-List list_at(int begin) {
-    return List(begin + 1, begin + 1 + int(word(begin)));
-}
-
 List list_of(int node) {
     int step = node < 0 ? 0 : int(word(node));
-    return step == 0 ? List(0, 0) : list_at(node + step);
-}
-
-// Whether a divided node's summary, if it has one, is all that is active in its box.
-bool ends_walk(int node, ivec4 box, out List list) {
-    int summary = int(word(node));
-    ivec2 middle = box.xy + (box.zw - box.xy) / 2;
-    int place = node + summary;
-    uvec4 others = uvec4(uvec2(middle), word(place), word(place + 1));
-    list = list_at(place + 2);
-    return summary != 0 && !is_active(others);
+    if (step == 0) return List(0, 0);
+    int begin = node + step;
+    return List(begin + 1, begin + 1 + int(word(begin)));
 }
 
 Lists lists_at(ivec2 point) {
@@ -84,18 +72,13 @@ Lists lists_at(ivec2 point) {
     bool inside = all(greaterThanEqual(point, box.xy)) && all(lessThanEqual(point, box.zw));
     int node = inside ? 0 : -1;
     int side = inside ? int(word(1)) : 0;
-    Lists lists;
-    bool ended = false;
-    while (side > 0 && !ended) {
-        ended = ends_walk(node, box, lists.at[0]);
-        if (!ended) {
-            node = child_at(node, side, point, box);
-            side = node < 0 ? 0 : int(word(node + 1));
-        }
+    while (side > 0) {
+        node = child_at(node, side, point, box);
+        side = node < 0 ? 0 : int(word(node + 1));
     }
-    if (ended) node = -1;
     if (node >= 0) node += int(word(node));
-    if (!ended) lists.at[0] = list_of(node);
+    Lists lists;
+    lists.at[0] = list_of(node);
 #ifdef PATHS
     for (int i = 1; i < most_lists; ++i) {
         side = node < 0 ? 0 : int(word(node + 1));

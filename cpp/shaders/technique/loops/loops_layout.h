@@ -9,9 +9,7 @@
 // A node covers a box. Words that lead on count from the node's first word; 0: nothing there.
 //
 //     primary     secondary node, side 0                 a leaf
-//                 summary, side, width, height, child ...    side x side children of that many quanta, row by row
-//     summary     error | radius, lowest | highest, list     the activation, around the middle of the node's box, of all
-//                 that is not in the list: where it is not active, the list is all there is
+//                 0, side, width, height, child ...      side x side children of that many quanta, row by row
 //     secondary   list, side 0                           a leaf
 //                 list, side, width, height, child ...
 //     list        number of words that follow, groups

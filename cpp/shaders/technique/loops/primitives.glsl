@@ -39,13 +39,28 @@ bool triangle_holds(uint primitive, ivec2 point) {
 #endif
 
 #ifdef STROKES
-// Squared distance from the point to a segment, in quanta; of which the sides are near, in a stroke's own scale.
+// The magnitude of the cross product of two differences, worked out in 64 bits: those of long segments cancel.
+float cross_magnitude(ivec2 a, ivec2 b) {
+    int high1, low1, high2, low2;
+    imulExtended(a.x, b.y, high1, low1);
+    imulExtended(a.y, b.x, high2, low2);
+    uint borrow;
+    uint low = usubBorrow(uint(low1), uint(low2), borrow);
+    int high = high1 - high2 - int(borrow);
+    bool negative = high < 0;
+    if (negative) {
+        low = ~low + 1u;
+        high = ~high + int(low == 0u);
+    }
+    return float(high) * 4294967296.0 + float(low);
+}
+
+// Squared distance from the point to a segment, in quanta.
 float distance2(ivec2 a, ivec2 b, ivec2 point) {
-    vec2 from_a = vec2(point - a), along = vec2(b - a);
-    float length2 = dot(along, along);
-    float share = length2 > 0.0 ? clamp(dot(from_a, along) / length2, 0.0, 1.0) : 0.0;
-    vec2 away = from_a - share * along;
-    return dot(away, away);
+    vec2 from_a = vec2(point - a), from_b = vec2(point - b), along = vec2(b - a);
+    bool beside = dot(from_a, along) > 0.0 && dot(from_b, along) < 0.0;
+    float across = cross_magnitude(b - a, point - a) / max(length(along), 1.0);
+    return beside ? across * across : min(dot(from_a, from_a), dot(from_b, from_b));
 }
 
 // What of a primitive is drawn. Figure 7's six rules: nothing of a base that is not there yet; the base where it is

@@ -23,15 +23,16 @@ struct Region {
 
 void add(Region& region, const Region& below) {
     region.error = std::max(region.error, below.error);
-    region.radius = std::max(
-        region.radius, rounded_up(slack * (double{below.radius} + distance_between(region.proxy, below.proxy))));
+    region.radius =
+        std::max(region.radius,
+                 rounded_up(slack * (double{below.radius} + distance_between(region.proxy, below.proxy))));
     region.lowest = std::min(region.lowest, below.lowest);
     region.highest = std::max(region.highest, below.highest);
 }
 
 // Each splitter's own: its triangle, and its error on the steepest ground between its arc and the base.
-LargeArray<Region> own_regions(const Arcs& arcs, const Refinement& refinement, const Dependencies& dependencies,
-                               const Ground& ground, unsigned threads) {
+LargeArray<Region> own_regions(const Arcs& arcs, const Refinement& refinement,
+                               const Dependencies& dependencies, const Ground& ground, unsigned threads) {
     LargeArray<Region> regions(arcs.points.size());
     LargeArray<float> steepest(arcs.points.size());
     parallel_for(arcs.count(), 64, threads, [&](size_t begin, size_t end) {
@@ -50,8 +51,8 @@ LargeArray<Region> own_regions(const Arcs& arcs, const Refinement& refinement, c
                 const bool stays = dependencies.stays[p] || arcs.kinds[arc] == ArcKind::frame;
                 const double error = double{refinement.errors[p]} * std::sqrt(1.0 + double{steepest[p]});
                 regions[p] = {s, stays ? INFINITY : rounded_up(error),
-                              rounded_up(std::max(distance_between(s, a), distance_between(s, b))), range.lowest,
-                              range.highest};
+                              rounded_up(std::max(distance_between(s, a), distance_between(s, b))),
+                              range.lowest, range.highest};
             }
         }
     });
@@ -80,7 +81,10 @@ struct NeedLists {
 class Components {
 public:
     Components(const Refinement& refinement, const NeedLists& needs)
-        : refinement_(refinement), needs_(needs), numbers_(needs.offsets.size() - 1, none), lowest_(numbers_.size()) {
+        : refinement_(refinement),
+          needs_(needs),
+          numbers_(needs.offsets.size() - 1, none),
+          lowest_(numbers_.size()) {
         for (uint32_t p = 0; p < numbers_.size(); ++p)
             if (refinement.is_splitter(p) && numbers_[p] == none)
                 explore(p);
@@ -177,8 +181,8 @@ uint32_t packed_heights(const Region& region, const GroundRange& all) {
 
 }  // namespace
 
-LargeArray<Activation> saturate(const Arcs& arcs, const Refinement& refinement, const Dependencies& dependencies,
-                                const Ground& ground, unsigned threads) {
+LargeArray<Activation> saturate(const Arcs& arcs, const Refinement& refinement,
+                                const Dependencies& dependencies, const Ground& ground, unsigned threads) {
     LargeArray<Region> regions = own_regions(arcs, refinement, dependencies, ground, threads);
     const NeedLists needs(arcs.points.size(), dependencies.needs);
     const Components components(refinement, needs);
@@ -190,8 +194,10 @@ LargeArray<Activation> saturate(const Arcs& arcs, const Refinement& refinement, 
         for (size_t m = begin + 1; m < end; ++m)
             add(all, regions[members[m]]);
         // As it will be read.
-        all.error = rounded_up(half_to_double(half_not_below(length_scale * double{all.error})) / length_scale);
-        all.radius = rounded_up(half_to_double(half_not_below(length_scale * double{all.radius})) / length_scale);
+        all.error =
+            rounded_up(half_to_double(half_not_below(length_scale * double{all.error})) / length_scale);
+        all.radius =
+            rounded_up(half_to_double(half_not_below(length_scale * double{all.radius})) / length_scale);
         for (size_t m = begin; m < end; ++m) {
             regions[members[m]] = all;
             components.each_needed(members[m], [&](uint32_t parent) {
@@ -206,8 +212,9 @@ LargeArray<Activation> saturate(const Arcs& arcs, const Refinement& refinement, 
     parallel_for(arcs.points.size(), 1 << 14, threads, [&](size_t begin, size_t end) {
         for (size_t p = begin; p < end; ++p) {
             const bool splits = refinement.is_splitter(static_cast<uint32_t>(p));
-            const Region region =
-                splits ? regions[p] : Region{arcs.points[p], INFINITY, 0.0F, ground.everywhere().lowest, ground.everywhere().highest};
+            const Region region = splits ? regions[p]
+                                         : Region{arcs.points[p], INFINITY, 0.0F, ground.everywhere().lowest,
+                                                  ground.everywhere().highest};
             activations[p] = {region.proxy.x, region.proxy.y, packed_lengths(region),
                               packed_heights(region, ground.everywhere())};
         }

@@ -30,7 +30,7 @@ struct Activation {
 static_assert(sizeof(Activation) == 16, "an RGBA32 texel");
 
 // Of every point; ends of arcs and vertices of frames are always active.
-LargeArray<Activation> saturate(const Arcs& arcs, const Refinement& refinement, const Dependencies& dependencies,
-                                const Ground& ground, unsigned threads);
+LargeArray<Activation> saturate(const Arcs& arcs, const Refinement& refinement,
+                                const Dependencies& dependencies, const Ground& ground, unsigned threads);
 
 }  // namespace decalgl::loops

@@ -53,7 +53,8 @@ Run directed(const NodedChains& noded, Run run) {
 
 class RunCutter {
 public:
-    RunCutter(const NodedChains& noded, const std::vector<uint8_t>& junctions) : noded_(noded), junctions_(junctions) {}
+    RunCutter(const NodedChains& noded, const std::vector<uint8_t>& junctions)
+        : noded_(noded), junctions_(junctions) {}
 
     void cut(uint32_t chain, bool closed, std::vector<Run>& runs, LargeArray<uint32_t>& frame) {
         const Span<const uint32_t> own = noded_.of(chain);
@@ -215,7 +216,8 @@ std::vector<uint8_t> find_junctions(const Chains& chains, const NodedChains& nod
     const auto pass = [&](uint32_t location, uint32_t before, uint32_t after) {
         const uint64_t pair = uint64_t{std::min(before, after)} << 32 | std::max(before, after);
         uint64_t first = unseen;
-        if (!neighbours[location].compare_exchange_strong(first, pair, std::memory_order_relaxed) && first != pair)
+        if (!neighbours[location].compare_exchange_strong(first, pair, std::memory_order_relaxed) &&
+            first != pair)
             found[location].store(1, std::memory_order_relaxed);
     };
     parallel_for(chains.count(), 64, threads, [&](size_t begin, size_t end) {

@@ -22,8 +22,8 @@ void refuse_styles(const Layer& layer) {
         if (stroke->empty())
             continue;
         for (const StrokeStyle& style : stroke->styles) {
-            refuse_unless(style.corner == Corner::round || layer.features.kind == FeatureKind::polygons, layer,
-                          "corners that are not round");
+            refuse_unless(style.corner == Corner::round || layer.features.kind == FeatureKind::polygons,
+                          layer, "corners that are not round");
             refuse_unless(style.cap == Cap::round || layer.features.kind == FeatureKind::polygons, layer,
                           "caps that are not round");
             refuse_unless(style.slope_correction == SlopeCorrection::none, layer, "slope correction");
@@ -55,14 +55,16 @@ Style style_of(const DecalView& decal, double quantum) {
 // All primitives of all slots, topmost first.
 class ItemMaker {
 public:
-    ItemMaker(const Hierarchy& hierarchy, LinePrimitives primitives) : hierarchy_(hierarchy), primitives_(primitives) {}
+    ItemMaker(const Hierarchy& hierarchy, LinePrimitives primitives)
+        : hierarchy_(hierarchy), primitives_(primitives) {}
 
     void add_fill(uint32_t slot, size_t feature, Items& items) const {
         const Arcs& arcs = hierarchy_.arcs;
         const Refinement& refinement = hierarchy_.refinement;
         for (const uint32_t arc : arcs.fill_of(feature))
             for (uint32_t p = arcs.begin(arc) + 1; p + 1 < arcs.end(arc); ++p)
-                if (turn_of(arcs.points[refinement.left[p]], arcs.points[p], arcs.points[refinement.right[p]]) != 0)
+                if (turn_of(arcs.points[refinement.left[p]], arcs.points[p],
+                            arcs.points[refinement.right[p]]) != 0)
                     items.push_back({slot, p});
     }
 
@@ -85,15 +87,16 @@ private:
     LinePrimitives primitives_;
 };
 
-Items make_items(const Hierarchy& hierarchy, const LoopsIndex& index, Span<const Decal> decals, uint32_t first_layer,
-                 unsigned threads) {
+Items make_items(const Hierarchy& hierarchy, const LoopsIndex& index, Span<const Decal> decals,
+                 uint32_t first_layer, unsigned threads) {
     constexpr size_t grain = 1024;
     const ItemMaker maker(hierarchy, index.primitives);
     std::vector<Items> blocks(block_count(decals.size(), grain));
     parallel_for(decals.size(), grain, threads, [&](size_t begin, size_t end) {
         for (size_t slot = begin; slot < end; ++slot) {
             const Decal& decal = decals[decals.size() - 1 - slot];
-            const size_t feature = hierarchy.first_features[decal.feature.layer - first_layer] + decal.feature.feature;
+            const size_t feature =
+                hierarchy.first_features[decal.feature.layer - first_layer] + decal.feature.feature;
             if (decal.is_stroke())
                 maker.add_stroke(static_cast<uint32_t>(slot), feature, blocks[begin / grain]);
             else
@@ -128,7 +131,8 @@ LargeArray<Base> make_bases(const Hierarchy& hierarchy, unsigned threads) {
     return bases;
 }
 
-void count_features(Span<const Layer> layers, Span<const Decal> decals, uint32_t first_layer, LoopsIndex& index) {
+void count_features(Span<const Layer> layers, Span<const Decal> decals, uint32_t first_layer,
+                    LoopsIndex& index) {
     std::vector<std::vector<bool>> seen;
     for (const Layer& layer : layers)
         seen.emplace_back(layer.features.feature_count(), false);
@@ -143,7 +147,8 @@ void count_features(Span<const Layer> layers, Span<const Decal> decals, uint32_t
         const uint64_t vertices = features.vertices(decal.feature.feature).size() / 2;
         const auto parts = static_cast<uint64_t>(features.feature_offsets[decal.feature.feature + 1] -
                                                  features.feature_offsets[decal.feature.feature]);
-        index.segments += features.kind == FeatureKind::polygons ? vertices : vertices - std::min(parts, vertices);
+        index.segments +=
+            features.kind == FeatureKind::polygons ? vertices : vertices - std::min(parts, vertices);
     }
 }
 
@@ -166,25 +171,26 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
     index->primitives = choice.options.primitives;
     count_features(input.layers, decals, input.first_layer, *index);
     Hierarchy hierarchy = build_hierarchy(input.layers, input.bounds, input.positions, *input.terrain,
-                                          widest_reach(input.layers, input.first_layer, decals), choice.options,
-                                          input.threads, progress);
+                                          widest_reach(input.layers, input.first_layer, decals),
+                                          choice.options, input.threads, progress);
     index->lattice = hierarchy.lattice;
     index->heights = hierarchy.heights;
     index->needs = hierarchy.needs;
     std::vector<float> half_widths;
     for (size_t slot = 0; slot < decals.size(); ++slot) {
         const Decal& decal = decals[decals.size() - 1 - slot];
-        index->styles.push_back(
-            style_of({&input.layers[decal.feature.layer - input.first_layer], decal}, index->lattice.quantum));
+        index->styles.push_back(style_of({&input.layers[decal.feature.layer - input.first_layer], decal},
+                                         index->lattice.quantum));
         half_widths.push_back(index->styles.back().half_width);
         index->slots.push_back(decal.feature);
     }
-    index->charge.resize(hierarchy.arcs.points.size() * (sizeof(LatticePoint) + sizeof(Base) + sizeof(Activation)));
+    index->charge.resize(hierarchy.arcs.points.size() *
+                         (sizeof(LatticePoint) + sizeof(Base) + sizeof(Activation)));
     Items items = make_items(hierarchy, *index, decals, input.first_layer, input.threads);
     index->items = items.size();
     index->settings = fitted(choice.options.bvh, items.size());
-    index->tree = build_tree({&hierarchy, half_widths, index->primitives}, std::move(items), index->lattice.terrain,
-                             index->settings, input.threads, index->charge, progress);
+    index->tree = build_tree({&hierarchy, half_widths, index->primitives}, std::move(items),
+                             index->lattice.terrain, index->settings, input.threads, index->charge, progress);
     index->bases = make_bases(hierarchy, input.threads);
     index->points = std::move(hierarchy.arcs.points);
     index->activations = std::move(hierarchy.activations);

@@ -31,7 +31,8 @@ struct Side {
 };
 
 std::array<Side, 4> sides_of(const Bounds& box) {
-    return {{{true, -1.0, box.min_x}, {true, 1.0, box.max_x}, {false, -1.0, box.min_y}, {false, 1.0, box.max_y}}};
+    return {
+        {{true, -1.0, box.min_x}, {true, 1.0, box.max_x}, {false, -1.0, box.min_y}, {false, 1.0, box.max_y}}};
 }
 
 bool lies_inside(Span<const double> part, const Bounds& box) {
@@ -147,7 +148,8 @@ void add_chains(const Layer& layer, uint32_t first_feature, const Lattice& latti
     size_t place = chains.points.size();
     chains.points.resize(points);
     for (const Block& block : blocks) {
-        std::copy(block.points.begin(), block.points.end(), chains.points.begin() + static_cast<ptrdiff_t>(place));
+        std::copy(block.points.begin(), block.points.end(),
+                  chains.points.begin() + static_cast<ptrdiff_t>(place));
         place += block.points.size();
         for (const uint64_t size : block.sizes)
             chains.offsets.push_back(chains.offsets.back() + size);

@@ -19,7 +19,8 @@ bool may_meet(LatticePoint a, LatticePoint b, LatticePoint c, const LatticeBox& 
     if (turn_of(a, b, c) < 0)
         std::swap(b, c);
     const auto is_beyond = [&](LatticePoint from, LatticePoint to) {
-        return turn_of(from, to, {box.min_x, box.min_y}) < 0 && turn_of(from, to, {box.max_x, box.min_y}) < 0 &&
+        return turn_of(from, to, {box.min_x, box.min_y}) < 0 &&
+               turn_of(from, to, {box.max_x, box.min_y}) < 0 &&
                turn_of(from, to, {box.min_x, box.max_y}) < 0 && turn_of(from, to, {box.max_x, box.max_y}) < 0;
     };
     return !is_beyond(a, b) && !is_beyond(b, c) && !is_beyond(c, a);
@@ -29,7 +30,12 @@ class Finder {
 public:
     Finder(const Arcs& arcs, const Locations& locations, const Refinement& refinement,
            Span<const uint32_t> splitters, Span<uint8_t> stays, Needs& needs)
-        : arcs_(arcs), locations_(locations), refinement_(refinement), splitters_(splitters), stays_(stays), needs_(needs) {}
+        : arcs_(arcs),
+          locations_(locations),
+          refinement_(refinement),
+          splitters_(splitters),
+          stays_(stays),
+          needs_(needs) {}
 
     void find(size_t arc) {
         if (arcs_.kinds[arc] == ArcKind::frame)
@@ -84,8 +90,8 @@ private:
 
 // The splitter that stands for each location: no_point for one that never goes. A ring's first vertex is there
 // as long as the ring is more than a point. Where an arc turns back on itself, one vertex stands for all.
-LargeArray<uint32_t> splitters_of(const Arcs& arcs, size_t locations, const Refinement& refinement, unsigned threads,
-                                  Needs& twins) {
+LargeArray<uint32_t> splitters_of(const Arcs& arcs, size_t locations, const Refinement& refinement,
+                                  unsigned threads, Needs& twins) {
     LargeArray<uint32_t> splitters(locations, no_point);
     constexpr size_t grain = 64;
     std::vector<Needs> blocks(block_count(arcs.count(), grain));

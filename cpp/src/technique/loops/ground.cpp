@@ -10,7 +10,8 @@ namespace {
 
 constexpr int32_t block_quads = 8;
 
-const GroundRange nothing = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 0.0F};
+const GroundRange nothing = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+                             0.0F};
 
 // The squared slope of a triangle with two sides along the axes.
 float slope2(double along_x, double along_y, const Heightfield& terrain) {
@@ -31,8 +32,10 @@ GroundRange range_of_block(const Heightfield& terrain, int32_t block_row, int32_
             if (row == last_row || column == last_column)
                 continue;
             const double nw = double{here}, ne = double{terrain.height(row, column + 1)};
-            const double sw = double{terrain.height(row + 1, column)}, se = double{terrain.height(row + 1, column + 1)};
-            range.steepest = std::max({range.steepest, slope2(se - sw, sw - nw, terrain), slope2(ne - nw, se - ne, terrain)});
+            const double sw = double{terrain.height(row + 1, column)},
+                         se = double{terrain.height(row + 1, column + 1)};
+            range.steepest = std::max(
+                {range.steepest, slope2(se - sw, sw - nw, terrain), slope2(ne - nw, se - ne, terrain)});
         }
     return range;
 }
@@ -46,7 +49,9 @@ Ground::Ground(const Heightfield& terrain, const Lattice& lattice, unsigned thre
       dx_(block_quads * terrain.dx()),
       dy_(block_quads * terrain.dy()),
       all_(nothing) {
-    const auto blocks = [](int32_t samples) { return std::max(1, (samples - 1 + block_quads - 1) / block_quads); };
+    const auto blocks = [](int32_t samples) {
+        return std::max(1, (samples - 1 + block_quads - 1) / block_quads);
+    };
     Level base{blocks(terrain.columns()), blocks(terrain.rows()), {}};
     base.blocks.resize(size_t(base.columns) * size_t(base.rows));
     parallel_for(base.blocks.size(), 64, threads, [&](size_t begin, size_t end) {

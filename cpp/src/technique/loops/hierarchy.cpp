@@ -10,8 +10,8 @@ double Hierarchy::error_of(uint32_t point) const {
 }
 
 Hierarchy build_hierarchy(Span<const Layer> layers, const Bounds& bounds, const PositionGrid& positions,
-                          const Heightfield& terrain, double reach, const LoopsOptions& options, unsigned threads,
-                          Progress& progress) {
+                          const Heightfield& terrain, double reach, const LoopsOptions& options,
+                          unsigned threads, Progress& progress) {
     Hierarchy hierarchy;
     hierarchy.lattice = Lattice::over(bounds, positions, reach);
     const Lattice& lattice = hierarchy.lattice;
@@ -33,7 +33,8 @@ Hierarchy build_hierarchy(Span<const Layer> layers, const Bounds& bounds, const 
     progress.report(0.4);
     hierarchy.refinement = refine_arcs(hierarchy.arcs, lattice, options, threads);
     progress.report(0.5);
-    const Dependencies dependencies = find_dependencies(hierarchy.arcs, locations, hierarchy.refinement, threads);
+    const Dependencies dependencies =
+        find_dependencies(hierarchy.arcs, locations, hierarchy.refinement, threads);
     hierarchy.needs = dependencies.needs.size();
     progress.report(0.65);
     const Ground ground(terrain, lattice, threads);

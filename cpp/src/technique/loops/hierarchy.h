@@ -8,7 +8,7 @@ namespace decalgl::loops {
 
 struct Hierarchy {
     Lattice lattice;
-    GroundRange heights;  // of all the ground
+    GroundRange heights;                   // of all the ground
     std::vector<uint32_t> first_features;  // of each layer, and how many there are in all
     std::vector<uint32_t> chain_features;  // of each chain
     Arcs arcs;
@@ -22,8 +22,8 @@ struct Hierarchy {
 
 // `reach`: half the width of the widest line, metres.
 Hierarchy build_hierarchy(Span<const Layer> layers, const Bounds& bounds, const PositionGrid& positions,
-                          const Heightfield& terrain, double reach, const LoopsOptions& options, unsigned threads,
-                          Progress& progress);
+                          const Heightfield& terrain, double reach, const LoopsOptions& options,
+                          unsigned threads, Progress& progress);
 
 // The features of a layer as they are where the tolerance is the same all over the map: what a vertex adds
 // that is off by no more than this, in metres, is left out. Rings of fewer than three vertices are left out too.

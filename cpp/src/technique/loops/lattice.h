@@ -39,8 +39,8 @@ inline int64_t turn_of(LatticePoint a, LatticePoint b, LatticePoint c) {
 
 // Whether the closed triangle holds p; one without area is the segments between its corners.
 inline bool triangle_holds(LatticePoint a, LatticePoint b, LatticePoint c, LatticePoint p) {
-    if (p.x < std::min({a.x, b.x, c.x}) || p.x > std::max({a.x, b.x, c.x}) || p.y < std::min({a.y, b.y, c.y}) ||
-        p.y > std::max({a.y, b.y, c.y}))
+    if (p.x < std::min({a.x, b.x, c.x}) || p.x > std::max({a.x, b.x, c.x}) ||
+        p.y < std::min({a.y, b.y, c.y}) || p.y > std::max({a.y, b.y, c.y}))
         return false;
     const int64_t ab = turn_of(a, b, p), bc = turn_of(b, c, p), ca = turn_of(c, a, p);
     return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
@@ -122,7 +122,8 @@ struct Lattice {
         const LatticePoint high = lattice.nearest(bounds.max_x, bounds.max_y);
         lattice.terrain.add(low);
         lattice.terrain.add(high);
-        lattice.clip = {bounds.min_x - margin, bounds.min_y - margin, bounds.max_x + margin, bounds.max_y + margin};
+        lattice.clip = {bounds.min_x - margin, bounds.min_y - margin, bounds.max_x + margin,
+                        bounds.max_y + margin};
         return lattice;
     }
 

@@ -25,11 +25,13 @@ Locations::Locations(Span<const LatticePoint> points, LargeArray<uint32_t>& numb
     LargeArray<uint32_t> order(count);
     parallel_for(count, grain, threads, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
-            keys[i] = spread(static_cast<uint32_t>(points[i].x)) | spread(static_cast<uint32_t>(points[i].y)) << 1;
+            keys[i] = spread(static_cast<uint32_t>(points[i].x)) | spread(static_cast<uint32_t>(points[i].y))
+                                                                       << 1;
             order[i] = static_cast<uint32_t>(i);
         }
     });
-    radix_sort(Span<uint64_t>(keys.data(), count), Span<uint32_t>(order.data(), count), threads, 2 * lattice_bits + 2);
+    radix_sort(Span<uint64_t>(keys.data(), count), Span<uint32_t>(order.data(), count), threads,
+               2 * lattice_bits + 2);
     numbers.resize(count);
     places_.reserve(count);
     for (size_t i = 0; i < count; ++i) {

@@ -19,28 +19,32 @@ using loops::LoopsIndex;
 
 [[noreturn]] void refuse_files() {
     throw Error(ErrorKind::unsupported,
-                "layers of technique 'loops' are not kept on disk; prepare the scene anew, or use technique 'static'");
+                "layers of technique 'loops' are not kept on disk; prepare the scene anew, or use technique "
+                "'static'");
 }
 
 [[noreturn]] void refuse_changes() {
-    throw Error(ErrorKind::unsupported, "layers of technique 'loops' stay as they were prepared, but for their level of "
-                                        "detail; use technique 'static' to restyle or edit them");
+    throw Error(ErrorKind::unsupported,
+                "layers of technique 'loops' stay as they were prepared, but for their level of "
+                "detail; use technique 'static' to restyle or edit them");
 }
 
 // The camera of the view, out of what all passes are told of it.
 DetailEye eye_of(const View& view) {
     const ViewBlock& block = *view.block;
     DetailEye eye;
-    const double base[] = {
-        view.positions.origin_x + block.base_block.x * view.positions.block_size + double{block.base_offset.x},
-        view.positions.origin_y + block.base_block.y * view.positions.block_size + double{block.base_offset.y},
-        double{block.base_sample_fraction.z} + double{block.base_sample_fraction.w}};
+    const double base[] = {view.positions.origin_x + block.base_block.x * view.positions.block_size +
+                               double{block.base_offset.x},
+                           view.positions.origin_y + block.base_block.y * view.positions.block_size +
+                               double{block.base_offset.y},
+                           double{block.base_sample_fraction.z} + double{block.base_sample_fraction.w}};
     for (int axis = 0; axis < 3; ++axis) {
         eye.forward[size_t(axis)] = double{block.forward[axis]};
         eye.eye[size_t(axis)] = base[axis] - double{block.forward.w} * double{block.forward[axis]};
     }
     const auto step = double{glm::length(glm::vec3(block.ray_direction_dy))};
     eye.pixels = step > 0.0 ? 1.0 / step : 0.0;
+    eye.corner = 1.0 / std::hypot(1.0, 0.5 * step * std::hypot(double(view.width), double(view.height)));
     eye.metres_per_pixel = step > 0.0 ? 0.0 : double{glm::length(glm::vec3(block.ray_origin_dy))};
     return eye;
 }
@@ -57,7 +61,8 @@ LayerLook loops::PreparedLoops::look_of(uint32_t, size_t) const {
     refuse_changes();
 }
 
-std::shared_ptr<const Prepared> loops::PreparedLoops::restyled(Span<const LayerLook>, const MemoryAccount&) const {
+std::shared_ptr<const Prepared> loops::PreparedLoops::restyled(Span<const LayerLook>,
+                                                               const MemoryAccount&) const {
     refuse_changes();
 }
 
@@ -73,7 +78,8 @@ std::shared_ptr<const Prepared> loops::PreparedLoops::tuned(const TechniqueOptio
     return std::make_shared<PreparedLoops>(index_, choice->detail);
 }
 
-std::unique_ptr<const Prepared> Loops::open(const ArchiveReader&, const std::string&, const MemoryAccount&) const {
+std::unique_ptr<const Prepared> Loops::open(const ArchiveReader&, const std::string&,
+                                            const MemoryAccount&) const {
     refuse_files();
 }
 
@@ -81,8 +87,8 @@ std::unique_ptr<const Prepared> Loops::preprocess(const TechniqueInput& input, P
     return loops::build_loops(input, progress);
 }
 
-void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>, const TerrainView&,
-                   const MemoryAccount& memory) {
+void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
+                   const TerrainView&, const MemoryAccount& memory) {
     prepared_ = std::static_pointer_cast<const loops::PreparedLoops>(std::move(prepared));
     if (uploaded_ == prepared_->index())
         return;
@@ -90,8 +96,8 @@ void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<con
     buffers_.clear();
     const LoopsIndex& index = *prepared_->index();
     const auto add = [&](const char* name, GLenum format, const auto& values) {
-        buffers_.push_back(
-            {name, gl::TextureBuffer::from(memory, "loops: index", format, Span(values.data(), values.size()))});
+        buffers_.push_back({name, gl::TextureBuffer::from(memory, "loops: index", format,
+                                                          Span(values.data(), values.size()))});
     };
     add("loops_points", GL_RG32I, index.points);
     add("loops_bases", GL_RG32UI, index.bases);
@@ -105,8 +111,9 @@ void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<con
 UpdateReport Loops::update(const View& view) {
     const LoopsIndex& index = *prepared_->index();
     if (view.antialias == Antialias::coverage && prepared_->detail().shows != LoopsDetail::Shows::layers)
-        throw Error(ErrorKind::unsupported, "heat maps of technique 'loops' count primitives at the centres of pixels; "
-                                            "draw them with antialias 'none'");
+        throw Error(ErrorKind::unsupported,
+                    "heat maps of technique 'loops' count primitives at the centres of pixels; "
+                    "draw them with antialias 'none'");
     UpdateReport report;
     report.pieces = index.tree.counts.references;
     for (const NamedBuffer& each : buffers_)
@@ -146,7 +153,8 @@ void Loops::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLi
     draw_with({"IDS"}, view, gbuffer, programs);
 }
 
-void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer,
+                      gl::ProgramLibrary& programs) {
     const LoopsIndex& index = *prepared_->index();
     const LoopsDetail& detail = prepared_->detail();
     const auto is_fill = [](const loops::Style& style) { return style.half_width == 0.0F; };
@@ -200,12 +208,14 @@ void Loops::set_detail(gl::Program& program, const View& view) const {
         const glm::dvec2 nearest = glm::clamp(glm::round(centre), -1.0 * (1 << 30), 1.0 * (1 << 30));
         program.set("circle_centre", glm::ivec2(nearest));
         program.set("circle_rest", glm::vec2((centre - nearest) * lattice.quantum));
-        program.set("circle", glm::vec2(static_cast<float>(detail.lens_radius), static_cast<float>(detail.lens)));
+        program.set("circle",
+                    glm::vec2(static_cast<float>(detail.lens_radius), static_cast<float>(detail.lens)));
     }
     if (detail.screen < 0.0 && detail.steps.empty())
         return;
     const DetailEye eye = detail.has_eye ? detail.eye : eye_of(view);
-    const glm::dvec2 place((eye.eye[0] - lattice.left) / lattice.quantum, (eye.eye[1] - lattice.bottom) / lattice.quantum);
+    const glm::dvec2 place((eye.eye[0] - lattice.left) / lattice.quantum,
+                           (eye.eye[1] - lattice.bottom) / lattice.quantum);
     const glm::dvec2 nearest = glm::clamp(glm::round(place), -1.0 * (1 << 30), 1.0 * (1 << 30));
     program.set("eye_place", glm::ivec2(nearest));
     program.set("eye_rest", glm::vec2((place - nearest) * lattice.quantum));
@@ -215,10 +225,11 @@ void Loops::set_detail(gl::Program& program, const View& view) const {
                                          static_cast<float>(std::max(highest - lowest, 1e-6))));
     if (detail.screen >= 0.0) {
         const bool flat = eye.pixels == 0.0;
-        program.set("eye_forward",
-                    flat ? glm::vec3(0.0F) : glm::vec3(eye.forward[0], eye.forward[1], eye.forward[2]));
-        program.set("screen_bound", glm::vec2(flat ? 0.0F : static_cast<float>(detail.screen / eye.pixels),
-                                              static_cast<float>(detail.screen * eye.metres_per_pixel)));
+        program.set("eye_forward", glm::vec4(eye.forward[0], eye.forward[1], eye.forward[2],
+                                             std::hypot(eye.forward[0], eye.forward[1])));
+        program.set("screen_bound",
+                    glm::vec2(flat ? 0.0F : static_cast<float>(detail.screen * eye.corner / eye.pixels),
+                              static_cast<float>(detail.screen * eye.metres_per_pixel)));
     }
     if (!detail.steps.empty()) {
         std::vector<glm::vec2> steps;

@@ -31,7 +31,8 @@ private:
         gl::TextureBuffer buffer;
     };
 
-    void draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer,
+                   gl::ProgramLibrary& programs);
     void set_detail(gl::Program& program, const View& view) const;
 
     std::shared_ptr<const loops::PreparedLoops> prepared_;

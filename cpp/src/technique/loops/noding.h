@@ -20,8 +20,8 @@ struct NodedChains {
     std::vector<uint64_t> offsets;
 
     Span<const uint32_t> of(size_t chain) const {
-        return Span<const uint32_t>(locations)
-            .subspan(static_cast<size_t>(offsets[chain]), static_cast<size_t>(offsets[chain + 1] - offsets[chain]));
+        return Span<const uint32_t>(locations).subspan(
+            static_cast<size_t>(offsets[chain]), static_cast<size_t>(offsets[chain + 1] - offsets[chain]));
     }
 };
 

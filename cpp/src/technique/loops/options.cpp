@@ -23,7 +23,7 @@ bool is_branching(uint32_t children) {
 }
 
 auto tied(const DetailEye& eye) {
-    return std::tie(eye.eye, eye.forward, eye.pixels, eye.metres_per_pixel);
+    return std::tie(eye.eye, eye.forward, eye.pixels, eye.corner, eye.metres_per_pixel);
 }
 
 bool operator==(const DetailStep& a, const DetailStep& b) {
@@ -36,8 +36,8 @@ auto tied(const LoopsDetail& detail) {
 }
 
 auto tied(const LoopsBvh& bvh) {
-    return std::tie(bvh.primary_branching, bvh.node_capacity, bvh.largest_share, bvh.summary, bvh.secondary_depths, bvh.secondary_branching,
-                    bvh.coverage_depth, bvh.minimum_coverage);
+    return std::tie(bvh.primary_branching, bvh.node_capacity, bvh.largest_share, bvh.secondary_depths,
+                    bvh.secondary_branching, bvh.coverage_depth, bvh.minimum_coverage);
 }
 
 }  // namespace
@@ -50,9 +50,9 @@ bool operator==(const LoopsDetail& a, const LoopsDetail& b) {
 
 bool LoopsChoice::equals(const TechniqueOptions& other) const {
     const auto* choice = dynamic_cast<const LoopsChoice*>(&other);
-    return choice != nullptr && !options.function && !choice->options.function && options.order == choice->options.order &&
-           options.primitives == choice->options.primitives && tied(options.bvh) == tied(choice->options.bvh) &&
-           detail == choice->detail;
+    return choice != nullptr && !options.function && !choice->options.function &&
+           options.order == choice->options.order && options.primitives == choice->options.primitives &&
+           tied(options.bvh) == tied(choice->options.bvh) && detail == choice->detail;
 }
 
 void validate(const LoopsOptions& options) {
@@ -60,15 +60,16 @@ void validate(const LoopsOptions& options) {
     for (const auto* levels : {&bvh.primary_branching, &bvh.secondary_branching}) {
         require(levels->size() <= 16, "bvh: a tree of LOOPS has at most 16 levels");
         for (const uint32_t children : *levels)
-            require(is_branching(children), "bvh: a branching of LOOPS is a square number from 4 to 4096, but one is " +
-                                                std::to_string(children));
+            require(is_branching(children),
+                    "bvh: a branching of LOOPS is a square number from 4 to 4096, but one is " +
+                        std::to_string(children));
     }
     for (const uint32_t depth : bvh.secondary_depths)
         require(depth < LOOPS_MOST_LISTS && depth <= bvh.secondary_branching.size(),
                 "bvh: a secondary tree's depth must be less than " + std::to_string(LOOPS_MOST_LISTS) +
                     " and have a branching for each of its levels, but one is " + std::to_string(depth));
-    require(bvh.largest_share > 0.0 && bvh.largest_share <= 1.0, "bvh: largest_share must be above 0 and at most 1");
-    require(bvh.summary <= 4096, "bvh: summary must be from 0 to 4096");
+    require(bvh.largest_share > 0.0 && bvh.largest_share <= 1.0,
+            "bvh: largest_share must be above 0 and at most 1");
     require(bvh.coverage_depth >= 1 && bvh.coverage_depth <= 4, "bvh: coverage_depth must be from 1 to 4");
     require(bvh.minimum_coverage > 0.0 && bvh.minimum_coverage <= 1.0,
             "bvh: minimum_coverage must be above 0 and at most 1");
@@ -87,12 +88,14 @@ void validate(const LoopsDetail& detail) {
         const DetailStep& step = detail.steps[i];
         require(std::isfinite(step.distance) && std::isfinite(step.tolerance) && step.tolerance >= 0.0,
                 "detail: distances and tolerances must be finite, and tolerances zero or more");
-        require(i == 0 || (step.distance > detail.steps[i - 1].distance && step.tolerance >= detail.steps[i - 1].tolerance),
+        require(i == 0 || (step.distance > detail.steps[i - 1].distance &&
+                           step.tolerance >= detail.steps[i - 1].tolerance),
                 "detail: distances must rise from step to step, and tolerances must not fall");
     }
-    require(detail.lens < 0.0 || (std::isfinite(detail.lens_radius) && detail.lens_radius >= 0.0 &&
-                                  std::isfinite(detail.lens_centre[0]) && std::isfinite(detail.lens_centre[1])),
-            "detail: a lens needs a finite centre and a radius of zero or more");
+    require(
+        detail.lens < 0.0 || (std::isfinite(detail.lens_radius) && detail.lens_radius >= 0.0 &&
+                              std::isfinite(detail.lens_centre[0]) && std::isfinite(detail.lens_centre[1])),
+        "detail: a lens needs a finite centre and a radius of zero or more");
     require(std::isfinite(detail.heat_top) && detail.heat_top > 0.0, "detail: heat_top must be above 0");
 }
 

@@ -33,7 +33,7 @@ struct LoopsIndex {
     LargeArray<Base> bases;
     LargeArray<Activation> activations;
     Tree tree;
-    std::vector<Style> styles;             // topmost first, as the rest of these
+    std::vector<Style> styles;  // topmost first, as the rest of these
     std::vector<FeatureReference> slots;
     uint64_t features = 0;
     uint64_t segments = 0;

@@ -10,7 +10,8 @@ namespace {
 
 class Query {
 public:
-    Query(const LoopsIndex& index, LatticePoint point) : index_(index), words_(index.tree.words), point_(point) {}
+    Query(const LoopsIndex& index, LatticePoint point)
+        : index_(index), words_(index.tree.words), point_(point) {}
 
     // The slots there, topmost first.
     std::vector<uint32_t> run() {
@@ -50,7 +51,8 @@ private:
     size_t child(size_t node, LatticeBox& box) const {
         const int64_t side = words_[node + 1];
         const int64_t width = words_[node + 2], height = words_[node + 3];
-        const int64_t column = (int64_t{point_.x} - box.min_x) / width, row = (int64_t{point_.y} - box.min_y) / height;
+        const int64_t column = (int64_t{point_.x} - box.min_x) / width,
+                      row = (int64_t{point_.y} - box.min_y) / height;
         const LatticeBox own = box;
         box.min_x = static_cast<int32_t>(own.min_x + column * width);
         box.min_y = static_cast<int32_t>(own.min_y + row * height);

@@ -82,7 +82,8 @@ float rounded_up(double value) {
     return double{rounded} < value ? std::nextafter(rounded, INFINITY) : rounded;
 }
 
-Refinement refine_arcs(const Arcs& arcs, const Lattice& lattice, const LoopsOptions& options, unsigned threads) {
+Refinement refine_arcs(const Arcs& arcs, const Lattice& lattice, const LoopsOptions& options,
+                       unsigned threads) {
     Refinement refinement;
     refinement.left.resize(arcs.points.size());
     refinement.right.resize(arcs.points.size());

@@ -16,7 +16,7 @@ namespace decalgl::loops {
 constexpr uint32_t no_point = UINT32_MAX;
 
 struct Refinement {
-    LargeArray<uint32_t> left;     // the base's ends; of an arc's own ends no_point
+    LargeArray<uint32_t> left;  // the base's ends; of an arc's own ends no_point
     LargeArray<uint32_t> right;
     LargeArray<uint32_t> parents;  // no_point: a root, or an arc's own end
     LargeArray<uint32_t> order;    // arc by arc, the splitters, the first to go first; then no_point
@@ -24,11 +24,14 @@ struct Refinement {
 
     bool is_splitter(uint32_t point) const { return left[point] != no_point; }
     // Whether the edge between neighbours in an arc is a side of p's triangle, p being one of them.
-    bool is_side(uint32_t p, uint32_t neighbour) const { return left[p] == neighbour || right[p] == neighbour; }
+    bool is_side(uint32_t p, uint32_t neighbour) const {
+        return left[p] == neighbour || right[p] == neighbour;
+    }
 };
 
 // Throws Error(input) for an order that a user's function made badly.
-Refinement refine_arcs(const Arcs& arcs, const Lattice& lattice, const LoopsOptions& options, unsigned threads);
+Refinement refine_arcs(const Arcs& arcs, const Lattice& lattice, const LoopsOptions& options,
+                       unsigned threads);
 
 // A float that is not below the value.
 float rounded_up(double value);

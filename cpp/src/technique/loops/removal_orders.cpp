@@ -70,7 +70,8 @@ struct Candidate {
 };
 
 double cross_of(LatticePoint a, LatticePoint b, LatticePoint origin) {
-    return (double(a.x) - origin.x) * (double(b.y) - origin.y) - (double(a.y) - origin.y) * (double(b.x) - origin.x);
+    return (double(a.x) - origin.x) * (double(b.y) - origin.y) -
+           (double(a.y) - origin.y) * (double(b.x) - origin.x);
 }
 
 // A run of vertices that turn the same way. `sum`: twice the area between their path, with the vertices before
@@ -139,7 +140,8 @@ private:
     }
 
     double error_of(const Bend& bend) const {
-        const double closing = cross_of(arc_[links_.after[bend.last]], arc_[links_.before[bend.first]], arc_[0]);
+        const double closing =
+            cross_of(arc_[links_.after[bend.last]], arc_[links_.before[bend.first]], arc_[0]);
         return std::sqrt(std::abs(0.5 * (bend.sum + closing)));
     }
 
@@ -277,7 +279,8 @@ void order_visvalingam_whyatt(Span<const LatticePoint> arc, std::vector<Removal>
     const auto offer = [&](uint32_t v) {
         if (v == 0 || v + 1 == arc.size())
             return;
-        const double area = 0.5 * std::abs(double(turn_of(arc[links.before[v]], arc[v], arc[links.after[v]])));
+        const double area =
+            0.5 * std::abs(double(turn_of(arc[links.before[v]], arc[v], arc[links.after[v]])));
         queue.push({std::sqrt(area), v, ++versions[v]});
     };
     for (uint32_t v = 1; v + 1 < arc.size(); ++v)
@@ -306,17 +309,18 @@ void order_by_function(Span<const LatticePoint> arc, const Lattice& lattice, con
     std::vector<bool> named(arc.size());
     bool is_right = order.size() + 2 == arc.size();
     for (Removal& removal : order) {
-        is_right = is_right && removal.vertex > 0 && removal.vertex + 1 < arc.size() && !named[removal.vertex] &&
-                   std::isfinite(removal.error) && removal.error >= 0.0;
+        is_right = is_right && removal.vertex > 0 && removal.vertex + 1 < arc.size() &&
+                   !named[removal.vertex] && std::isfinite(removal.error) && removal.error >= 0.0;
         if (!is_right)
             break;
         named[removal.vertex] = true;
         removal.error /= lattice.quantum;
     }
     if (!is_right)
-        throw Error(ErrorKind::input, "the order of removal must name each vertex between the two ends of an arc once, "
-                                      "with a finite error of zero or more; for an arc of " +
-                                          std::to_string(arc.size()) + " vertices it gave something else");
+        throw Error(ErrorKind::input,
+                    "the order of removal must name each vertex between the two ends of an arc once, "
+                    "with a finite error of zero or more; for an arc of " +
+                        std::to_string(arc.size()) + " vertices it gave something else");
 }
 
 }  // namespace decalgl::loops

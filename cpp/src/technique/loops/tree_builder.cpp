@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
-#include "technique/loops/half_float.h"
 
 namespace decalgl::loops {
 namespace {
@@ -62,85 +60,6 @@ struct Division {
     }
 };
 
-// What a node's walk may end with: the items that stay active longest, and a region that holds those of all the
-// others. Where that is not active, none of them is (activation.h).
-struct Summary {
-    Items kept;
-    uint32_t error_and_radius = 0;
-    uint32_t lowest_and_highest = 0;
-};
-
-class Summarizer {
-public:
-    Summarizer(const Shapes& shapes, uint32_t size) : shapes_(shapes), size_(size) {}
-
-    // Nothing is kept where the node holds little more, or nearly all of it is always active.
-    Summary summarize(const Items& items, const LatticeBox& box) const {
-        Summary summary;
-        const size_t most = std::min<size_t>(4 * size_t{size_}, items.size() / 2);
-        if (size_ == 0 || items.size() < 2 * size_t{size_})
-            return summary;
-        std::vector<double> weights(items.size());
-        for (size_t i = 0; i < items.size(); ++i)
-            weights[i] = weight_of(items[i]);
-        std::vector<double> sorted = weights;
-        const auto last_kept = sorted.begin() + static_cast<ptrdiff_t>(size_ - 1);
-        std::nth_element(sorted.begin(), last_kept, sorted.end(), std::greater<>());
-        // Of equal ones all go, or all stay where they always do.
-        const double least = *last_kept;
-        const bool stays = std::isinf(least);
-        for (size_t i = 0; i < items.size(); ++i)
-            if (weights[i] > least || (stays && weights[i] == least))
-                summary.kept.push_back(items[i]);
-        if (summary.kept.empty() || summary.kept.size() > most)
-            return {};
-        bound_others(items, weights, least, stays, box, summary);
-        return summary;
-    }
-
-    // Of the middle of a box, as the shaders find it.
-    static LatticePoint middle(const LatticeBox& box) {
-        return {static_cast<int32_t>(box.min_x + (int64_t{box.max_x} - box.min_x) / 2),
-                static_cast<int32_t>(box.min_y + (int64_t{box.max_y} - box.min_y) / 2)};
-    }
-
-private:
-    const Activation& activation_of(Item item) const {
-        return shapes_.hierarchy->activations[shapes_.generator_of(item)];
-    }
-    static double error_in(const Activation& a) { return half_to_double(static_cast<uint16_t>(a.error_and_radius)); }
-    static double radius_in(const Activation& a) {
-        return half_to_double(static_cast<uint16_t>(a.error_and_radius >> 16));
-    }
-
-    // Regions matter where they are much larger than what shows of their errors.
-    double weight_of(Item item) const {
-        const Activation& a = activation_of(item);
-        return std::max(error_in(a), 0.01 * radius_in(a));
-    }
-
-    void bound_others(const Items& items, const std::vector<double>& weights, double least, bool stays,
-                      const LatticeBox& box, Summary& summary) const {
-        double error = 0.0, radius = 0.0;
-        uint32_t lowest = 0xFFFF, highest = 0;
-        for (size_t i = 0; i < items.size(); ++i) {
-            if (weights[i] > least || (stays && weights[i] == least))
-                continue;
-            const Activation& a = activation_of(items[i]);
-            error = std::max(error, error_in(a));
-            radius = std::max(radius, radius_in(a) + length_scale * distance_between(middle(box), {a.x, a.y}));
-            lowest = std::min(lowest, a.lowest_and_highest & 0xFFFF);
-            highest = std::max(highest, a.lowest_and_highest >> 16);
-        }
-        // A little more, against the shaders' rounding.
-        summary.error_and_radius = half_not_below(error) | uint32_t{half_not_below(1.001 * radius)} << 16;
-        summary.lowest_and_highest = lowest | highest << 16;
-    }
-
-    const Shapes& shapes_;
-    uint32_t size_;
-};
-
 void write_list(Span<const Item> items, LargeArray<uint32_t>& words, TreeCounts& counts) {
     if (items.empty())
         return;
@@ -178,15 +97,6 @@ void write_leaf(bool has_list, LargeArray<uint32_t>& words, TreeCounts& counts) 
     words.push_back(0);
 }
 
-void write_divided(const Summary& summary, const Division& division, LargeArray<uint32_t>& words, TreeCounts& counts) {
-    write_node(!summary.kept.empty(), division, words, counts);
-    if (summary.kept.empty())
-        return;
-    words.push_back(summary.error_and_radius);
-    words.push_back(summary.lowest_and_highest);
-    write_list(summary.kept, words, counts);
-}
-
 class SubtreeBuilder {
 public:
     SubtreeBuilder(const Shapes& shapes, const LoopsBvh& settings, Tree& tree)
@@ -201,13 +111,14 @@ public:
         if (!is_worth_it(items, parts)) {
             parts.clear();
             write_leaf(true, words_, counts_);
-            const size_t depth = level < settings_.secondary_depths.size() ? settings_.secondary_depths[level] : 0;
+            const size_t depth =
+                level < settings_.secondary_depths.size() ? settings_.secondary_depths[level] : 0;
             secondary(std::move(items), box, 0, depth, 0);
             return node;
         }
         const Division division(box, settings_.primary_branching[level]);
         const size_t children = parts.size();
-        write_divided(Summarizer(shapes_, settings_.summary).summarize(items, box), division, words_, counts_);
+        write_node(false, division, words_, counts_);
         items = Items();
         for (uint32_t i = 0; i < children; ++i)
             if (!parts[i].empty()) {
@@ -229,7 +140,8 @@ private:
         size_t held = 0;
         for (const Items& part : parts)
             held += part.size();
-        return !parts.empty() && double(held) <= settings_.largest_share * double(parts.size()) * double(items.size());
+        return !parts.empty() &&
+               double(held) <= settings_.largest_share * double(parts.size()) * double(items.size());
     }
 
     template <typename Visit>
@@ -263,7 +175,8 @@ private:
             kept = std::move(items);
         }
         items = Items();
-        const bool divided = std::any_of(parts.begin(), parts.end(), [](const Items& part) { return !part.empty(); });
+        const bool divided =
+            std::any_of(parts.begin(), parts.end(), [](const Items& part) { return !part.empty(); });
         if (divided)
             write_node(!kept.empty(), Division(box, settings_.secondary_branching[level]), words_, counts_);
         else
@@ -276,7 +189,8 @@ private:
         const Division division(box, settings_.secondary_branching[level]);
         for (uint32_t i = 0; i < parts.size(); ++i)
             if (!parts[i].empty()) {
-                const size_t child = secondary(std::move(parts[i]), division.child(i), level + 1, depth, walk);
+                const size_t child =
+                    secondary(std::move(parts[i]), division.child(i), level + 1, depth, walk);
                 words_[node + NODE_WORDS + i] = static_cast<uint32_t>(child - node);
             }
         return node;
@@ -298,7 +212,8 @@ private:
             return;
         }
         const Division division(box, settings_.secondary_branching[level]);
-        each_child(item, division, [&](uint32_t child) { count_met(item, division.child(child), level + 1, end, met); });
+        each_child(item, division,
+                   [&](uint32_t child) { count_met(item, division.child(child), level + 1, end, met); });
     }
 
     const Shapes& shapes_;
@@ -329,12 +244,15 @@ public:
             if (nodes_[i].items.size() > portion && nodes_[i].level < settings_.primary_branching.size() &&
                 nodes_[i].items.size() > settings_.node_capacity)
                 divide(i);
-        parallel_for(nodes_.size(), 1, threads_, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i)
-                if (nodes_[i].side == 0)
-                    SubtreeBuilder(shapes_, settings_, nodes_[i].subtree)
-                        .primary(std::move(nodes_[i].items), nodes_[i].box, nodes_[i].level);
-        }, [&](double share) { progress.report(0.75 + 0.25 * share); });
+        parallel_for(
+            nodes_.size(), 1, threads_,
+            [&](size_t begin, size_t end) {
+                for (size_t i = begin; i < end; ++i)
+                    if (nodes_[i].side == 0)
+                        SubtreeBuilder(shapes_, settings_, nodes_[i].subtree)
+                            .primary(std::move(nodes_[i].items), nodes_[i].box, nodes_[i].level);
+            },
+            [&](double share) { progress.report(0.75 + 0.25 * share); });
         return assemble(charge);
     }
 
@@ -348,10 +266,10 @@ private:
         Tree unused;
         const SubtreeBuilder builder(shapes_, settings_, unused);
         parallel_for(items.size(), grain, threads_, [&](size_t begin, size_t end) {
-            blocks[begin / grain] = builder.distribute(Span<const Item>(items).subspan(begin, end - begin), division);
+            blocks[begin / grain] =
+                builder.distribute(Span<const Item>(items).subspan(begin, end - begin), division);
         });
-        const Summary summary = Summarizer(shapes_, settings_.summary).summarize(items, nodes_[place].box);
-        write_divided(summary, division, nodes_[place].subtree.words, nodes_[place].subtree.counts);
+        write_node(false, division, nodes_[place].subtree.words, nodes_[place].subtree.counts);
         nodes_[place].side = division.side;
         nodes_[place].children.assign(children, 0);
         for (uint32_t child = 0; child < children; ++child) {
@@ -379,9 +297,10 @@ private:
             tree.counts.longest_walk = std::max(tree.counts.longest_walk, counts.longest_walk);
         }
         if (total > most_words)
-            throw Error(ErrorKind::memory,
-                        "the index of technique 'loops' would take " + format_bytes(4 * total) +
-                            ", more than a shader can read; choose a bvh with less depth or branching, or fewer features");
+            throw Error(ErrorKind::memory, "the index of technique 'loops' would take " +
+                                               format_bytes(4 * total) +
+                                               ", more than a shader can read; choose a bvh with less depth "
+                                               "or branching, or fewer features");
         charge.resize(charge.bytes() + 4 * total);
         tree.words.resize(total);
         for (size_t i = 0; i < nodes_.size(); ++i) {
@@ -403,16 +322,6 @@ private:
 };
 
 }  // namespace
-
-uint32_t Shapes::generator_of(Item item) const {
-    const Refinement& refinement = hierarchy->refinement;
-    const uint32_t p = item.primitive & LOOPS_POINT_MASK;
-    if ((item.primitive & EDGE_FLAG) != 0)
-        return (item.primitive & EDGE_FROM_NEXT) != 0 ? p + 1 : p;
-    if (half_widths[item.slot] == 0.0F)
-        return p;
-    return refinement.parents[p] == refinement.right[p] ? refinement.right[p] : refinement.left[p];
-}
 
 LatticeBox Shapes::box_around(Item item) const {
     const LargeArray<LatticePoint>& points = hierarchy->arcs.points;
@@ -441,7 +350,9 @@ bool Shapes::meets(Item item, const LatticeBox& box) const {
     const uint32_t left = refinement.left[p], right = refinement.right[p];
     if (reach == 0)
         return may_meet(points[left], points[p], points[right], 0, box);
-    const auto side_meets = [&](uint32_t a, uint32_t b) { return may_meet(points[a], points[b], points[b], reach, box); };
+    const auto side_meets = [&](uint32_t a, uint32_t b) {
+        return may_meet(points[a], points[b], points[b], reach, box);
+    };
     if (side_meets(left, right))
         return true;
     // Of the triangle's sides those that are drawn with it.

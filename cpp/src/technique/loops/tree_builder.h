@@ -31,8 +31,6 @@ struct Shapes {
         const float half_width = half_widths[item.slot];
         return half_width == 0.0F ? 0 : static_cast<int64_t>(std::ceil(half_width)) + 1;
     }
-    // The vertex without which nothing of an item is drawn.
-    uint32_t generator_of(Item item) const;
     // What it lies in.
     LatticeBox box_around(Item item) const;
 };

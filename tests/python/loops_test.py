@@ -1,0 +1,407 @@
+"""LOOPS: against the reference at full detail and within its bounds, topology by shapely, levels of detail by place."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import shapely
+from shapely import LineString, box
+
+import decalgl as dg
+import judge
+import rounding
+import scenes
+import shapes
+from decalgl.features import read_features
+from decalgl.loops import NAMED_BVHS
+from scenes import View
+from small_scenes import BOUNDS, MAP, SIZE, draw, flat_scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+    IntArray = NDArray[np.int64]
+
+FULL = dg.Loops(detail=dg.Detail(screen=None, uniform=0.0))
+EVERYTHING = [
+    "hills",
+    "hills_orthographic",
+    "line_widths",
+    "translucent",
+    "far_coordinates",
+    "nodata_holes",
+    "larger_than_the_map",
+    "zero_lengths",
+    "nested_holes",
+    "slivers",
+    "crowd",
+]
+QUANTA = 2.5  # noding moves edges by up to two
+
+
+@functools.cache
+def renderer() -> dg.Renderer:
+    """It draws every sample of the terrain."""
+    return dg.Renderer(terrain_error=0.0)
+
+
+def by_loops(view: View, technique: dg.Loops) -> View:
+    """The same view, drawn by LOOPS."""
+    copy = dg.Scene(view.scene.terrain, view.scene.exaggeration, view.scene.relief)
+    copy._layers.extend(dataclasses.replace(layer, technique=technique) for layer in view.scene.layers)
+    return view._replace(scene=copy)
+
+
+def rough_ring(seed: int, x: float, y: float, radius: float, count: int = 400) -> shapely.Polygon:
+    """A ring with details of all sizes."""
+    generator = np.random.default_rng(seed)
+    angle = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    waves = np.arange(2, count // 4)
+    phase, size = generator.uniform(0, 2 * np.pi, len(waves)), generator.normal(size=len(waves)) / waves
+    r = radius * (1.0 + 0.25 * (size[:, None] * np.cos(waves[:, None] * angle + phase[:, None])).sum(axis=0))
+    return shapely.Polygon(np.column_stack([x + r * np.cos(angle), y + r * np.sin(angle)]))
+
+
+# Against the reference
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+def test_full_detail_is_right_wherever_the_reference_is_asked(name: str) -> None:
+    view = by_loops(scenes.build(name), FULL)
+    frame = judge.draw(renderer(), view)
+    assert (frame.ids >= 0).any()
+    own = judge.judge_ids(
+        view, frame, judge.own_surface(view, frame), QUANTA * frame.stats.counts["quantum_m"]
+    )
+    assert own.far == 0, own
+
+
+def allowed(view: View, frame: dg.Frame, pixels: float) -> FloatArray:
+    """Metres (h, w) on the ground that show as at most so many pixels, in any direction."""
+    basis = view.camera.basis()
+    away = frame.world.reshape(-1, 3) - np.array(view.camera.eye)
+    if view.camera.fov is None:
+        return np.full(frame.depth.shape, pixels * view.camera.view_height / view.size[1])
+    focal = 0.5 * view.size[1] / np.tan(np.radians(0.5 * view.camera.fov))
+    metres: FloatArray = pixels * (away @ basis[2]) ** 2 / (focal * np.linalg.norm(away, axis=1))
+    return metres.reshape(frame.depth.shape)
+
+
+@pytest.mark.parametrize("name", ["hills", "hills_orthographic", "eye_at_one_metre"])
+@pytest.mark.parametrize("pixels", [0.5, 4.0])
+def test_ids_differ_only_within_the_bound_of_an_edge(name: str, pixels: float) -> None:
+    view = by_loops(scenes.build(name), dg.Loops(detail=dg.Detail(screen=pixels)))
+    frame = judge.draw(renderer(), view)
+    surface = judge.own_surface(view, frame)
+    bound = allowed(view, frame, pixels) + QUANTA * frame.stats.counts["quantum_m"]
+    found = judge.judge_ids(view, frame, surface, bound)
+    assert found.far == 0, found
+    assert found.wrong > 0
+
+
+@pytest.mark.parametrize("name", ["hills", "line_widths"])
+def test_coverage_is_the_mean_of_its_samples(name: str) -> None:
+    view = by_loops(scenes.build(name), FULL)
+    frame = judge.draw(renderer(), view)
+    x0, y0, x1, y1 = crop = judge.busiest_crop(frame, (120, 68))
+    expected = rounding.coverage_of_samples(view, frame, crop)
+    own = judge.overlay_of(renderer(), view, "coverage")[y0:y1, x0:x1]
+    # Silhouettes are filtered by the frame.
+    whole = np.isfinite(frame.depth[y0:y1, x0:x1])
+    difference = np.abs(own - expected).max(axis=-1)[whole]
+    assert (difference > 2.1 / 32).mean() <= 0.01
+    assert (difference > 2.1 / 255).mean() <= 0.02
+
+
+# Parts of the technique
+
+
+def varied_scene(technique: str | dg.Technique) -> dg.Scene:
+    """Polygons with outlines, translucent, and lines over them."""
+    scene = flat_scene()
+    rings = [rough_ring(i, 15.0 + 17.0 * (i % 5), 15.0 + 17.0 * (i // 5), 11.0) for i in range(25)]
+    outline = dg.Outline(width=1.0, width_units="m", color="black")
+    scene.add_polygons(rings, color=shapes.tints(25, 4, 0.6), outline=outline, technique=technique)
+    walk = np.cumsum(np.random.default_rng(1).normal(size=(300, 2)), axis=0) + 50.0
+    scene.add_lines([LineString(walk)], width=0.8, width_units="m", color="red", technique=technique)
+    return scene
+
+
+@pytest.mark.parametrize("bvh", [*NAMED_BVHS, dg.LoopsBvh((9, 4), 10, (3, 2), (4, 9, 4), 1, 0.5)], ids=str)
+def test_every_index_draws_the_same(bvh: Any) -> None:
+    static = draw(varied_scene("static"))
+    frame = draw(varied_scene(dg.Loops(bvh=bvh, detail=FULL.detail)))
+    np.testing.assert_array_equal(frame.ids, static.ids)
+    np.testing.assert_array_equal(frame.layers, static.layers)
+    assert np.abs(frame.image.astype(int) - static.image).max() <= 2
+
+
+def test_segments_draw_what_triangles_do_with_twice_as_many() -> None:
+    walks = np.cumsum(np.random.default_rng(2).normal(size=(20, 500, 2)), axis=1) * 0.8 + 50.0
+    frames = {}
+    for primitives in ("tri", "seg"):
+        for screen in (0.0, 3.0):
+            scene = flat_scene()
+            detail = dg.Detail(screen=screen)
+            scene.add_lines(
+                [LineString(walk) for walk in walks],
+                width=0.5,
+                width_units="m",
+                technique=dg.Loops(primitives=primitives, detail=detail),
+            )
+            frames[primitives, screen] = draw(scene)
+    for screen in (0.0, 3.0):
+        np.testing.assert_array_equal(frames["tri", screen].ids, frames["seg", screen].ids)
+    assert (frames["tri", 0.0].ids != frames["tri", 3.0].ids).any()
+    tri, seg = (frames[each, 0.0].stats.counts["loops_primitives"] for each in ("tri", "seg"))
+    assert tri == 20 * 498
+    assert 0.49 < tri / seg < 0.51
+
+
+def test_pick_lists_what_lies_there_at_full_detail() -> None:
+    static = draw(varied_scene("static"))
+    frame = draw(varied_scene("loops"))
+    for x in range(0, 100, 7):
+        for y in range(0, 100, 7):
+            expected = [(picked.layer.index, picked.row) for picked in static.pick(x, y)]
+            assert [(picked.layer.index, picked.row) for picked in frame.pick(x, y)] == expected
+
+
+# Levels of detail by place
+
+
+def prepared(technique: dg.Loops) -> tuple[dg.Renderer, dg.Layer]:
+    """Rings that do not overlap, so that none needs another."""
+    scene = flat_scene()
+    rings = [rough_ring(i, 10.0 + 20.0 * (i % 5), 10.0 + 20.0 * (i // 5), 5.0) for i in range(25)]
+    layer = scene.add_polygons(rings, color=shapes.tints(25, 4), technique=technique)
+    drawn = dg.Renderer(size=(400, 400), antialias="none")
+    drawn.preprocess(scene)
+    drawn.update(MAP)
+    return drawn, layer
+
+
+def test_detail_changes_without_preparing() -> None:
+    drawn, layer = prepared(FULL)
+    full = drawn.render()
+    before, ids = full.image.copy(), full.ids.copy()
+    drawn.set_detail(layer, dg.Detail(screen=None, uniform=2.0))
+    coarse = drawn.render()
+    assert (coarse.ids != ids).any()
+    assert coarse.stats.bytes == full.stats.bytes  # nothing new was uploaded
+    drawn.set_detail(layer, FULL.detail)
+    again = drawn.render()
+    np.testing.assert_array_equal(again.image, before)
+    # Frames of before stay right.
+    assert (coarse.ids != ids).any()
+
+
+def test_a_lens_shows_everything_inside_it() -> None:
+    drawn, layer = prepared(FULL)
+    full = drawn.render().ids.copy()
+    drawn.set_detail(layer, dg.Detail(screen=None, uniform=50.0))
+    nothing = drawn.render().ids.copy()
+    drawn.set_detail(layer, dg.Detail(screen=None, uniform=50.0, lens=(50.0, 50.0, 20.0)))
+    seen = drawn.render().ids
+    y, x = (np.mgrid[0:400, 0:400] + 0.5) / 4.0
+    inside = np.hypot(x - 50.0, 100.0 - y - 50.0) < 20.0
+    far = np.hypot(x - 50.0, 100.0 - y - 50.0) > 45.0
+    np.testing.assert_array_equal(seen[inside], full[inside])
+    np.testing.assert_array_equal(seen[far], nothing[far])
+    assert (full[far] != nothing[far]).any()
+
+
+def test_details_by_distance_and_a_second_camera() -> None:
+    drawn, layer = prepared(FULL)
+    full = drawn.render().ids.copy()
+    corner = dg.Camera.look_at((0.0, 0.0, 2.0), (50.0, 50.0, 0.0))
+    steps = ((30.0, 0.0), (60.0, 20.0))
+    drawn.set_detail(layer, dg.Detail(screen=None, by_distance=steps, camera=corner))
+    seen = drawn.render().ids
+    y, x = (np.mgrid[0:400, 0:400] + 0.5) / 4.0
+    distance = np.hypot(x, 100.0 - y)
+    np.testing.assert_array_equal(seen[distance < 30.0], full[distance < 30.0])
+    assert (seen != full)[distance > 60.0].mean() > 0.02
+    # What lies behind the camera is drawn in full, as nothing there can be off on its screen.
+    drawn.set_detail(layer, dg.Detail(screen=20.0, camera=corner, camera_size=(100, 100)))
+    watched = drawn.render().ids
+    assert (watched != full)[distance > 60.0].any()
+    # The least of two bounds counts.
+    drawn.set_detail(layer, dg.Detail(screen=20.0, uniform=0.0, camera=corner, camera_size=(100, 100)))
+    np.testing.assert_array_equal(drawn.render().ids, full)
+
+
+def test_heat_maps_count_primitives() -> None:
+    drawn, layer = prepared(FULL)
+    heat = {}
+    for shows in ("tested", "active"):
+        for uniform in (0.0, 3.0):
+            drawn.set_detail(layer, dg.Detail(screen=None, uniform=uniform, shows=shows, heat_top=40.0))
+            image = drawn.render().image[..., :3].astype(int)
+            heat[shows, uniform] = int((image[..., 0] + image[..., 1]).sum())  # rise with the count
+    assert heat["tested", 3.0] > heat["active", 3.0] > 0
+    assert heat["active", 0.0] > heat["active", 3.0]
+    drawn.set_picture((100, 100), "coverage")
+    with pytest.raises(dg.UnsupportedError, match="antialias"):
+        drawn.update(MAP)
+
+
+# Topology
+
+
+def edges_of(coords: FloatArray, parts: IntArray) -> FloatArray:
+    """The distinct edges (n, 4) of rings, each from its lower end."""
+    sizes = np.diff(parts)
+    following = np.arange(1, len(coords) + 1)
+    following[parts[1:][sizes > 0] - 1] = parts[:-1][sizes > 0]
+    a, b = coords, coords[following]
+    swap = (a[:, 0] > b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] > b[:, 1]))
+    edges = np.where(swap[:, None], np.column_stack([b, a]), np.column_stack([a, b]))
+    return edges[(edges[:, :2] != edges[:, 2:]).any(axis=1)]
+
+
+def count_crossings(edges: FloatArray) -> int:
+    """Pairs of distinct edges that meet anywhere but at a common end."""
+    distinct = np.unique(edges, axis=0)
+    lines = shapely.linestrings(distinct.reshape(-1, 2, 2))
+    first, second = shapely.STRtree(lines).query(lines, predicate="intersects")
+    first, second = first[first < second], second[first < second]
+    common = np.zeros(len(first), dtype=np.bool_)
+    for p in (distinct[first, :2], distinct[first, 2:]):
+        for q in (distinct[second, :2], distinct[second, 2:]):
+            common |= (p == q).all(axis=1)
+    along = shapely.length(shapely.intersection(lines[first[common]], lines[second[common]])) > 1e-6
+    return int((~common).sum() + along.sum())
+
+
+@functools.cache
+def land_cover() -> Any:
+    """Real land cover of a part of Honolulu, every border of which is shared."""
+    layer = scenes.build("honolulu").scene.layers[0]
+    return layer.features
+
+
+@pytest.mark.parametrize("order", ["douglas_peucker", "wang_mueller", "visvalingam_whyatt"])
+def test_real_borders_neither_cross_nor_open(order: str) -> None:
+    features = land_cover()
+    levels = 50 if order == "douglas_peucker" else 6
+    tolerances = [-1.0, *np.geomspace(1.0, 20000.0, levels)]
+    before, outer = None, 0.0
+    fewest = 1.0
+    for coords, parts, _ in dg.Loops(order=order).simplified(features, tolerances):
+        edges = edges_of(coords, parts)
+        if before is None:
+            before, whole = count_crossings(edges), len(edges)
+            rim = odd_edges(edges)
+            outer = shapely.length(shapely.multilinestrings(rim.reshape(-1, 2, 2).tolist()))
+        else:
+            # Fewer levels by shapely where there is more to look at.
+            if len(edges) < 60000 or levels == 6:
+                assert count_crossings(edges) <= before
+        # What bounds one feature and not two is the rim of the map: no border came apart.
+        assert (
+            shapely.length(shapely.multilinestrings(odd_edges(edges).reshape(-1, 2, 2).tolist()))
+            <= outer * 1.001
+        )
+        fewest = min(fewest, len(edges) / whole)
+    assert fewest < 0.2
+
+
+def odd_edges(edges: FloatArray) -> FloatArray:
+    """Those that are there an odd number of times."""
+    distinct, counts = np.unique(edges, axis=0, return_counts=True)
+    odd: FloatArray = distinct[counts % 2 == 1]
+    return odd
+
+
+def test_partitions_stay_partitions() -> None:
+    cells = shapes.partition(BOUNDS, 9, 8, seed=2)
+    assert all(shapely.is_valid(cells))
+    features = read_features(cells, "polygons", terrain_crs=None, layer_name="cells")[0]
+    tolerances = [0.0, 0.5, 1.5, 100.0]
+    for order in ("douglas_peucker", "wang_mueller", "visvalingam_whyatt"):
+        fewer = len(features.coords) + 1
+        for coords, parts, owners in dg.Loops(order=order).simplified(features, tolerances):
+            rings = [shapely.Polygon(coords[a:b]) for a, b in itertools.pairwise(parts)]
+            assert len(rings) == len(cells)
+            assert list(owners) == list(range(len(cells) + 1))
+            assert all(shapely.is_valid(rings))
+            whole = shapely.union_all(rings)
+            assert shapely.area(rings).sum() == pytest.approx(whole.area, rel=1e-9)
+            assert whole.geom_type == "Polygon"
+            assert len(whole.interiors) == 0
+            assert len(coords) < fewer
+            fewer = len(coords)
+
+
+def test_a_function_gives_the_order() -> None:
+    ring = rough_ring(3, 50.0, 50.0, 30.0)
+
+    def by_index(arc: FloatArray) -> tuple[Any, Any]:
+        indices = np.arange(1, len(arc) - 1)
+        return indices, indices.astype(float)
+
+    def fails(_: FloatArray) -> tuple[Any, Any]:
+        raise ZeroDivisionError
+
+    features = read_features([ring], "polygons", terrain_crs=None, layer_name="ring")[0]
+    full, half, none = dg.Loops(order=by_index).simplified(features, [0.0, 200.5, 1e6])
+    assert len(full[0]) == 400
+    assert 100 < len(half[0]) < 300
+    assert len(none[0]) == 0
+    with pytest.raises(dg.InputError, match="each vertex"):
+        dg.Loops(order=lambda _: ([1], [0.0])).simplified(features, [0.0])
+    with pytest.raises(ZeroDivisionError):
+        dg.Loops(order=fails).simplified(features, [0.0])
+
+
+# What is refused
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"order": "dougles_peucker"}, "Did you mean 'douglas_peucker'"),
+        ({"primitives": "quad"}, "'tri', 'seg'"),
+        ({"bvh": "constan"}, "'constant'"),
+        ({"bvh": dg.LoopsBvh((10,))}, "square"),
+        ({"bvh": dg.LoopsBvh((4,), 45, (2,), (4,))}, "secondary"),
+        ({"detail": None}, "Detail"),
+    ],
+)
+def test_bad_options_are_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(dg.InputError, match=words):
+        dg.Loops(**options)
+
+
+def test_bad_levels_of_detail_are_refused() -> None:
+    with pytest.raises(dg.InputError, match="screen"):
+        dg.Detail(screen=-1.0)
+    with pytest.raises(dg.InputError, match="everywhere"):
+        dg.Loops(detail=dg.Detail(screen=None))
+    with pytest.raises(dg.InputError, match="must not fall"):
+        dg.Loops(detail=dg.Detail(by_distance=((1.0, 2.0), (2.0, 1.0))))
+    with pytest.raises(dg.InputError, match="shows"):
+        dg.Detail(shows="all")
+
+
+def test_what_it_does_not_draw_is_refused() -> None:
+    scene = flat_scene()
+    scene.add_lines([LineString([(0, 0), (9, 9)])], width_units="m", dash="dashed", technique="loops")
+    with pytest.raises(dg.UnsupportedError, match="dashes"):
+        draw(scene)
+    scene = flat_scene()
+    layer = scene.add_polygons([box(10, 10, 50, 50)], technique="loops")
+    other = scene.add_polygons([box(20, 20, 30, 30)], name="other", technique="static")
+    drawn = dg.Renderer(size=SIZE, antialias="none")
+    drawn.preprocess(scene)
+    with pytest.raises(dg.UnsupportedError, match="static"):
+        drawn.restyle(layer, color="red")
+    with pytest.raises(dg.UnsupportedError, match="'other'"):
+        drawn.set_detail(other, dg.Detail())
