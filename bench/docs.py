@@ -22,14 +22,10 @@ ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "bench" / "results" / "latest.json"
 PAGES = (
     ROOT / "README.md",
-<<<<<<< HEAD
     ROOT / "docs" / "interaction.md",
     ROOT / "docs" / "techniques" / "static.md",
     ROOT / "docs" / "techniques" / "distance_field.md",
-=======
-    ROOT / "docs" / "techniques" / "static.md",
     ROOT / "docs" / "techniques" / "loops.md",
->>>>>>> loops
 )
 MARKED = re.compile(r"(<!-- bench:(\w+) -->\n).*?(<!-- /bench -->)", re.DOTALL)
 

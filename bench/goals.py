@@ -78,10 +78,8 @@ RATIOS = {
     "reorder": Ratio("{reorder_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
     "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
     "style": Ratio("{style_ms:.1f} ms ÷ plain {plain_ms:.1f} ms"),
-<<<<<<< HEAD
     "D": Ratio("lists {lists_ms:.0f} ms ÷ bins {bins_ms:.0f} ms", least=1.0, scenes="pixel lines"),
     "update_share": Ratio("{bins_update_ms:.0f} ms of {bins_ms:.0f} ms, bins"),
-=======
     "loops_detail": Ratio("half a pixel {half_ms:.1f} ms ÷ full detail {full_ms:.1f} ms"),
     "loops_static": Ratio("{half_ms:.1f} ms ÷ static {static_ms:.1f} ms"),
     "loops_seg_primitives": Ratio("{loops_primitives:,.0f} primitives ÷ segments of all levels"),
@@ -91,6 +89,5 @@ RATIOS = {
     "loops_constant_time": Ratio("{loops_ms:.1f} ms ÷ the constant index"),
     "loops_P": Ratio("{loops_prepare_ms:.0f} ms ÷ radix sort {radix_sort_ms:.1f} ms"),
     "loops_bytes_per_segment": Ratio("{segments:,.0f} segments"),
->>>>>>> loops
     "mode": Ratio("frames of {mode_ms:.0f} ms ÷ {none_ms:.0f} ms"),
 }

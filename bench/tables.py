@@ -211,7 +211,6 @@ def styles(results: Results) -> str:
     return "\n\n".join([_table(drawn, STYLES), _table(modes, MODES), machine(results, "960 x 540")])
 
 
-<<<<<<< HEAD
 def changes(results: Results) -> str:
     """What changes of a map take, in frames of the view of all of it."""
     return "\n\n".join([_table(_having(results, "restyle"), CHANGES), machine(results)])
@@ -227,7 +226,8 @@ def networks(results: Results) -> str:
         return "No figures yet."
     fields = _having(results, "field_memory", techniques=("distance_field",))
     return "\n\n".join([_table(list(drawn.values()), NETWORKS), _table(fields, FIELDS)])
-=======
+
+
 def loops(results: Results) -> str:
     """Tables 2 and figure 16 of the paper, levels of detail, and what preparing costs."""
     found = [one for one in results["records"] if one["technique"].startswith("loops")]
@@ -242,7 +242,6 @@ def loops(results: Results) -> str:
     )
     made = [_table([one for one in named if value in one], columns) for value, columns in tables]
     return "\n\n".join([*made, machine(results)])
->>>>>>> loops
 
 
 BLOCKS: dict[str, Callable[[Results], str]] = {
@@ -252,12 +251,9 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "indexes": indexes,
     "extremes": extremes,
     "styles": styles,
-<<<<<<< HEAD
     "changes": changes,
     "networks": networks,
-=======
     "loops": loops,
->>>>>>> loops
 }
 
 

@@ -11,12 +11,9 @@ interior     interior: what does the inside of a large polygon cost?
 stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
-<<<<<<< HEAD
 dynamic      D, update_share: what do lines of constant width on the screen cost, by tiles and by lists?
 distance_field   sets, drawn, field_memory: what do networks by distance fields cost?
-=======
 loops        loops_detail, loops_static, loops_seg_time, loops_constant_time ...: what do levels of detail save?
->>>>>>> loops
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
@@ -26,8 +23,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import (
-    dynamic,
     distance_field,
+    dynamic,
     files,
     indexes,
     interaction,
@@ -64,10 +61,7 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "interaction": interaction.measure,
     "dynamic": dynamic.measure,
     "styles": styles.measure,
-<<<<<<< HEAD
     "volume": volume.measure,
     "distance_field": distance_field.measure,
-=======
     "loops": loops.measure,
->>>>>>> loops
 }

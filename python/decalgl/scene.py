@@ -176,15 +176,10 @@ class Scene:
                 order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
                     missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
         <<<<<<< HEAD
-                technique: who draws the layer: "auto", "static", "dynamic" or a `Technique` (`decalgl.techniques`).
-                    Neighbouring layers of one technique are one pass; between passes only colour and coverage are known.
-                    Outlines with widths on the screen are a pass over that of the fills.
-        =======
-                technique: who draws the layer: "auto", "static", "loops" or a `Technique` (`decalgl.techniques`). Neighbouring
-                    layers of one technique are one pass; between passes only colour and coverage are known.
-        >>>>>>> loops
+        technique: who draws the layer: "auto", a name or a `Technique` with its choices (`decalgl.techniques`).
+            Neighbouring layers of one technique are one pass; between passes only colour and coverage are known.
 
-                Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
+        Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """
         colors = ColorKeywords(
             column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, legend_kwds, missing_kwds
