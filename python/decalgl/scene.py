@@ -165,19 +165,19 @@ class Scene:
     ) -> Layer:
         """Adds a layer of polygons on top of the others.
 
-                data: whatever `decalgl.features.read_features` reads; inside is even-odd over all rings of a feature.
-                name: of the layer, for messages and legends. layer: the one to read of a file with several.
-                crs: of data that carries none.
-                column ... missing_kwds: colours, as in `GeoDataFrame.plot`; color="none" for outlines alone.
-                legend, legend_kwds: whether `Frame.save` draws a legend, and how, as in `GeoDataFrame.plot`.
-                hatch: a `Hatch` in place of an even fill; or one (or None) for each row, the name of a column of them, or
-                    a dict {category: hatch} by the categories of `column`.
-                outline: an `Outline`.
-                order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
-                    missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
-        <<<<<<< HEAD
+        data: whatever `decalgl.features.read_features` reads; inside is even-odd over all rings of a feature.
+        name: of the layer, for messages and legends. layer: the one to read of a file with several.
+        crs: of data that carries none.
+        column ... missing_kwds: colours, as in `GeoDataFrame.plot`; color="none" for outlines alone.
+        legend, legend_kwds: whether `Frame.save` draws a legend, and how, as in `GeoDataFrame.plot`.
+        hatch: a `Hatch` in place of an even fill; or one (or None) for each row, the name of a column of them, or
+            a dict {category: hatch} by the categories of `column`.
+        outline: an `Outline`.
+        order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
+            missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
         technique: who draws the layer: "auto", a name or a `Technique` with its choices (`decalgl.techniques`).
             Neighbouring layers of one technique are one pass; between passes only colour and coverage are known.
+            Outlines with widths on the screen are a pass over that of the fills.
 
         Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """
