@@ -11,7 +11,7 @@ import json
 import sys
 from pathlib import Path
 
-STAGES = ("vertex", "fragment", "compute")
+STAGES = ("vertex", "geometry", "fragment", "compute")
 DELIMITER = "DECALGL_TEXT"
 
 HEADER = """\
@@ -89,7 +89,7 @@ def program_table(manifest: dict[str, dict[str, object]], paths: list[str]) -> s
         flag_arrays.append(f"constexpr std::string_view flags_{index}[] = {{{quoted}}};\n")
         stages = ", ".join(f'"{program.get(stage, "")}"' for stage in STAGES)
         rows.append(f'    {{"{name}", {stages}, {{flags_{index}, {len(flags)}}}}},\n')
-    rows.append('    {"", "", "", "", {}},\n')
+    rows.append('    {"", "", "", "", "", {}},\n')
     table = "const ManifestProgram programs[] = {\n" + "".join(rows) + "};\n"
     return "".join(flag_arrays) + "\n" + table + f"constexpr std::size_t program_count = {len(manifest)};\n\n"
 

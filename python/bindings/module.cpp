@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, module) {
     decalgl::bindings::register_styles(module);
     decalgl::bindings::register_scene(module);
     decalgl::bindings::register_loops(module);
+    decalgl::bindings::register_distance_field(module);
     decalgl::bindings::register_renderer(module);
     decalgl::bindings::register_doctor(module);
     decalgl::bindings::register_bench(module);

@@ -12,7 +12,9 @@ scene.render(scene.home(), size=(1920, 1080)).save("map.png")
 from ._core import __version__
 from .camera import Camera
 from .coloring import Coloring
+from .distance_field import DistanceField
 from .doctor import Diagnosis, doctor
+from .dynamic import Dynamic
 from .errors import (
     CancelledError,
     ColumnError,
@@ -32,14 +34,17 @@ from .indexes import BvhIndex
 from .layer import Layer
 from .lens import Lens
 from .loops import Detail, Loops, LoopsBvh
+from .networks import Lod, NetworkCategory, NetworkStyle
 from .patterns import Pattern
 from .renderer import Renderer
+from .road_styles import road_styles
 from .scene import Relief, Scene
 from .scene_file import load_scene
 from .strokes import Hatch
 from .styles import Casing, Outline
 from .techniques import Static, Technique
 from .terrain import Terrain
+from .volume import Volume
 
 __all__ = [
     "BvhIndex",
@@ -53,6 +58,8 @@ __all__ = [
     "DecalWarning",
     "Detail",
     "Diagnosis",
+    "DistanceField",
+    "Dynamic",
     "FeatureTable",
     "FileError",
     "Frame",
@@ -61,9 +68,12 @@ __all__ = [
     "InputError",
     "Layer",
     "Lens",
+    "Lod",
     "Loops",
     "LoopsBvh",
     "MemoryLimitError",
+    "NetworkCategory",
+    "NetworkStyle",
     "Outline",
     "Pattern",
     "Picked",
@@ -77,7 +87,9 @@ __all__ = [
     "Technique",
     "Terrain",
     "UnsupportedError",
+    "Volume",
     "__version__",
     "doctor",
     "load_scene",
+    "road_styles",
 ]

@@ -41,6 +41,11 @@ class LayerChanges:
     def __bool__(self) -> bool:
         return self._any
 
+    @property
+    def states(self) -> Mapping[int, LayerState]:
+        """Those of the layers that were changed, by their places; later changes make another mapping."""
+        return self._states
+
     def begin(self, layers: tuple[AnyLayer, ...], crs: pyproj.CRS | None = None) -> None:
         """Forgets everything: these layers were just prepared; crs is the scene's."""
         self._crs = crs

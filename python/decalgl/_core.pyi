@@ -58,6 +58,8 @@ class Stroke:
     styles: Sequence[StrokeStyle]
     style_of: NDArray[np.uint32]
     widest: float
+    in_pixels: bool
+    limits: tuple[float, float, float, float]
     def __init__(self) -> None: ...
 
 class Hatch:
@@ -80,6 +82,7 @@ class LayerLook:
     stroke: DecalLook
     casing: DecalLook
     draw_order: NDArray[np.int64]
+    technique_options: TechniqueOptions | None
     def __init__(self) -> None: ...
 
 class LayerEdit:
@@ -159,6 +162,76 @@ def loops_simplified(
     choice: LoopsChoice,
 ) -> list[tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]]: ...
 
+class VolumeOptions(TechniqueOptions):
+    def __init__(self, exact: bool, arc_step: float) -> None: ...
+
+class DynamicOptions(TechniqueOptions):
+    def __init__(self, method: str, width_rule: str, cell: float) -> None: ...
+
+class NetworkStyle:
+    lod: float
+    width: float
+    main: float
+    main_color: Sequence[float]
+    border_color: Sequence[float]
+    texture_share: float
+    def __init__(self) -> None: ...
+
+class NetworkCategory:
+    name: str
+    styles: Sequence[NetworkStyle]
+    caps: Sequence[int]
+    slope_correction: SlopeCorrection
+    pattern: LinePattern
+    raster: int
+    raster_length: float
+    sketch: tuple[float, float]
+    def __init__(self) -> None: ...
+
+class LodSource:
+    __members__: dict[str, LodSource]
+
+class LodSpace:
+    __members__: dict[str, LodSpace]
+
+class LodPlace:
+    __members__: dict[str, LodPlace]
+
+class FieldBlending:
+    __members__: dict[str, FieldBlending]
+
+class DropOff:
+    __members__: dict[str, DropOff]
+
+class Borders:
+    __members__: dict[str, Borders]
+
+class LevelOfDetail:
+    source: LodSource
+    value: float
+    near: float
+    far: float
+    space: LodSpace
+    extent: Sequence[float]
+    def __init__(self) -> None: ...
+    def set_texels(self, texels: NDArray[np.uint8]) -> None: ...
+
+class DistanceFieldOptions(TechniqueOptions):
+    categories: Sequence[NetworkCategory]
+    lod: LevelOfDetail
+    widths_at: LodPlace
+    bits: int
+    drop_off: DropOff
+    blending: FieldBlending
+    borders: Borders
+    keep_depth: bool
+    mend_intrusion: bool
+    mend_protrusion: bool
+    def __init__(self) -> None: ...
+    def set_category_of(self, category_of: NDArray[np.uint32]) -> None: ...
+    def add_raster(self, texels: NDArray[np.uint8]) -> None: ...
+    def add_drop_off(self, texels: NDArray[np.uint8]) -> None: ...
+
 class Scene:
     def __init__(
         self,
@@ -186,6 +259,9 @@ class Scene:
         outline_mode: OutlineMode,
         outline_order: OutlineOrder,
         draw_order: NDArray[np.int64],
+    ) -> None: ...
+    def set_triangles(
+        self, layer: int, coordinates: NDArray[np.float64], first_of: NDArray[np.int64]
     ) -> None: ...
 
 class Camera:

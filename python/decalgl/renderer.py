@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ._looks import LayerState
     from .camera import Camera
     from .lens import Lens
     from .loops import Detail
@@ -48,7 +49,7 @@ BACKENDS = ("auto", "egl", "osmesa")
 SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))
 MOST_THREADS = 1024
 LARGEST_SIDE = 1 << 20
-COVERAGE_SAMPLES = 32
+COVERAGE_SAMPLES = 64
 LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 IMAGE_BYTES, SURFACE_BYTES, TARGET_SIDE = 4, 64, 4096
 MULTISAMPLED_BYTES, MULTISAMPLED_SIDE = 40, 2048  # a sample
@@ -125,6 +126,7 @@ class Renderer:
         self._cache: bytes = b""
         self._prepared_layers: tuple[AnyLayer, ...] = ()
         self._updated_layers: tuple[AnyLayer, ...] = ()
+        self._updated_states: Mapping[int, LayerState] = {}
 
     def has_options(self, given: Mapping[str, Any]) -> bool:
         """Whether this renderer is what `given`, arguments other than size and antialias, asks for."""
@@ -307,7 +309,9 @@ class Renderer:
         background: "sky", a colour, or None for transparent (alpha 0) where there is no terrain.
         """
         low, high = drawn_background(background)
-        return Frame(self._core.render(low, high), self._updated_layers)
+        if self._updated_layers is self._prepared_layers:
+            self._updated_states = self._changes.states
+        return Frame(self._core.render(low, high), self._updated_layers, self._updated_states)
 
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""

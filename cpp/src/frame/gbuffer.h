@@ -14,7 +14,7 @@ public:
 
     // Binds it for drawing and clears it to sky.
     void begin() const;
-    GBufferView view() const { return {&position, &surface, &depth}; }
+    GBufferView view() const { return {&position, &surface, &depth, nullptr, {}}; }
     int width() const { return position.width(); }
     int height() const { return position.height(); }
 

@@ -153,6 +153,7 @@ Program Program::create(const std::string& name, const Flags& flags) {
         }
     };
     add(GL_VERTEX_SHADER, program.vertex);
+    add(GL_GEOMETRY_SHADER, program.geometry);
     add(GL_FRAGMENT_SHADER, program.fragment);
     add(GL_COMPUTE_SHADER, program.compute);
     return ProgramBuilder::build(name, flags, stages);

@@ -17,6 +17,7 @@ const char* shader_source(std::string_view path);
 struct ManifestProgram {
     std::string_view name;
     std::string_view vertex;
+    std::string_view geometry;
     std::string_view fragment;
     std::string_view compute;
     Span<const std::string_view> flags;

@@ -128,6 +128,41 @@ Texture2D Texture2D::create(const MemoryAccount& account, const std::string& nam
     return texture;
 }
 
+Texture2D Texture2D::create_array(const MemoryAccount& account, const std::string& name, GLenum format,
+                                  int width, int height, int layers) {
+    check_size(name, width, height, 1);
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limit);
+    if (layers < 1 || layers > limit) {
+        throw Error(ErrorKind::memory,
+                    fmt::format("The texture {} cannot have {} layers; this driver has 1 to {}.", name,
+                                layers, limit));
+    }
+    Texture2D texture;
+    texture.charge_ = MemoryCharge(
+        account, name,
+        storage_bytes(texel_bytes(format), width, height, 1, 0) * static_cast<std::uint64_t>(layers));
+    texture.format_ = format;
+    texture.width_ = width;
+    texture.height_ = height;
+    texture.levels_ = 1;
+    texture.layers_ = layers;
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
+    texture.handle_ = ObjectHandle(ObjectType::texture, id);
+    glTextureStorage3D(id, 1, format, width, height, layers);
+    texture.set_filter(GL_NEAREST, GL_NEAREST);
+    texture.set_wrap(GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE);
+    check_errors(fmt::format("creating the texture {} of {} x {} x {}", name, width, height, layers).c_str());
+    return texture;
+}
+
+void Texture2D::update_layer(int layer, const void* texels) {
+    const TransferFormat transfer = transfer_format(format_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage3D(id(), 0, 0, 0, layer, width_, height_, 1, transfer.format, transfer.type, texels);
+}
+
 void Texture2D::update(int level, int x, int y, int width, int height, const void* texels) {
     const TransferFormat transfer = transfer_format(format_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -32,6 +32,13 @@ public:
     static Texture2D create(const MemoryAccount& account, const std::string& name, GLenum format, int width,
                             int height, int levels = 1, int samples = 0);
 
+    /// An array of layers of one size, each of one level. Attached to a framebuffer, geometry shaders choose
+    /// the layer. Throws as create() does, and Error(memory) for more layers than the driver has.
+    static Texture2D create_array(const MemoryAccount& account, const std::string& name, GLenum format,
+                                  int width, int height, int layers);
+
+    /// Writes a whole layer of an array.
+    void update_layer(int layer, const void* texels);
     /// Writes a rectangle from tightly packed texels of transfer_format(format()).
     void update(int level, int x, int y, int width, int height, const void* texels);
     void set_filter(GLenum minify, GLenum magnify);
@@ -42,12 +49,15 @@ public:
     void bind_image(GLuint unit, GLenum access, int level = 0) const;
 
     GLuint id() const { return handle_.name(); }
-    GLenum target() const { return samples_ > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D; }
+    GLenum target() const {
+        return layers_ > 0 ? GL_TEXTURE_2D_ARRAY : samples_ > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
+    }
     GLenum format() const { return format_; }
     int width() const { return width_; }
     int height() const { return height_; }
     int levels() const { return levels_; }
     int samples() const { return samples_; }
+    int layers() const { return layers_; }  ///< of an array; else 0
     std::size_t bytes() const { return static_cast<std::size_t>(charge_.bytes()); }
     explicit operator bool() const { return static_cast<bool>(handle_); }
 
@@ -59,6 +69,7 @@ private:
     int height_ = 0;
     int levels_ = 0;
     int samples_ = 0;
+    int layers_ = 0;
 };
 
 /// What a framebuffer draws into; the textures must outlive it.

@@ -13,7 +13,9 @@
 // the context.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -30,6 +32,7 @@
 
 namespace decalgl::gl {
 class Framebuffer;
+class Program;
 class ProgramLibrary;
 class Texture2D;
 }  // namespace decalgl::gl
@@ -82,6 +85,13 @@ struct SeenPoint {
     double gradient_x = 0.0;  // metres of height a metre on the map
     double gradient_y = 0.0;
     double forward_z = -1.0;  // of the camera's unit view direction
+    // An offset (x, y) on the map, dropped onto that plane, lies (x * east + y * north) / (1 + x * lean_x + y * lean_y)
+    // pixels from the place on the screen.
+    std::array<double, 2> east{};
+    std::array<double, 2> north{};
+    double lean_x = 0.0;
+    double lean_y = 0.0;
+    double pixels_per_metre = 1.0;  // seen head-on
 };
 
 class Prepared {
@@ -132,6 +142,7 @@ struct View {
     PositionGrid positions;
     Antialias antialias = Antialias::none;  // none or coverage: the others are made of pictures without
     double widest_pixel = 0.0;              // metres that the farthest pixel is wide, seen head-on
+    double terrain_error = 0.0;             // pixels that the terrain's level of detail may be off
     CoverageRule coverage = CoverageRule::exact;
     const ViewBlock* block = nullptr;  // what the uniform block holds
     TimingLog* timings = nullptr;      // for passes of a technique's own; may be null
@@ -150,11 +161,13 @@ struct TerrainView {
 // texels may have been gathered from anywhere in the picture: what they show follows from these two alone. depth:
 // reversed, as attached to the G-buffer.
 // `lens`: the share of each pixel that is inside the lens, and whether its centre is; null without one.
+// `set_gathered`: for programs that include shared/gathered.glsl, where texels were gathered; else empty.
 struct GBufferView {
     const gl::Texture2D* position = nullptr;
     const gl::Texture2D* surface = nullptr;
     const gl::Texture2D* depth = nullptr;
     const gl::Texture2D* lens = nullptr;
+    std::function<void(gl::Program&)> set_gathered;
 };
 
 struct UpdateReport {
@@ -184,6 +197,8 @@ public:
     virtual UpdateReport update(const View& view) = 0;
     // Whether `draw` needs a depth attachment for itself, with whatever values.
     virtual bool needs_depth(const View&) const { return false; }
+    // Whether `draw` and `draw_ids` need a depth attachment with a stencil.
+    virtual bool needs_stencil(const View&) const { return false; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture: all of it,
     // or over what view.has_below says is there.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;

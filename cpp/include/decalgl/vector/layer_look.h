@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "decalgl/vector/decal.h"
@@ -23,7 +24,8 @@ struct LayerLook {
     DecalLook fill;
     DecalLook stroke;
     DecalLook casing;
-    std::vector<int64_t> draw_order;  // features from bottom to top; empty: as it is
+    std::vector<int64_t> draw_order;                  // features from bottom to top; empty: as it is
+    std::shared_ptr<const TechniqueOptions> options;  // of the layer's technique; null: as they are
 
     // Null for decals that are not drawn themselves.
     const DecalLook* of(DecalRole role) const {
