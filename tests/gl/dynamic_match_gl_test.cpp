@@ -108,13 +108,14 @@ TEST_CASE("lines are cut to half a sample and put on the drawn surface, as on th
             const ivec2 from = prepared->vertices[source.first + k].place;
             const bool ends = k + 1 == source.count;
             const ivec2 to = ends ? from : prepared->vertices[source.first + k + 1].place;
-            const double length = std::hypot(double{to.x} - from.x, double{to.y} - from.y);
+            const glm::dvec2 way(to - from);
+            const double length = glm::length(way);
             const int pieces = length > longest ? static_cast<int>(length / longest) + 1 : 1;
             for (int piece = 0; piece < pieces; ++piece, ++next) {
                 const MatchedVertex& found = vertices[next];
                 const double share = static_cast<double>(piece) / pieces;
-                wrong += std::abs(found.place.x - (from.x + share * (double{to.x} - from.x))) > 1.0;
-                wrong += std::abs(found.place.y - (from.y + share * (double{to.y} - from.y))) > 1.0;
+                wrong += std::abs(found.place.x - (from.x + share * way.x)) > 1.0;
+                wrong += std::abs(found.place.y - (from.y + share * way.y)) > 1.0;
                 wrong += found.line != i;
                 const double ground =
                     ground_at(terrain, matched.lattice.x_of(found.place), matched.lattice.y_of(found.place));
