@@ -141,6 +141,16 @@ def test_a_straight_edge_errs_by_little_in_any_direction(index: str | dg.BvhInde
         assert ((exact > 0.0) & (exact < 1.0)).sum() >= 15
 
 
+def test_a_search_for_borders_that_is_cut_short_has_found_one() -> None:
+    """Every pixel has some 1800 cells of ten fills below a strip over its upper part, where the search comes last."""
+    scene = dg.Scene(dg.Terrain.flat((0.0, 0.0, 12.0, 12.0)))
+    strips = [box(0.0, y + 0.64, 12.0, y + 1.0) for y in range(12)]
+    scene.add_polygons([box(0.0, 0.0, 12.0, 12.0)] * 10 + strips, color=["black"] * 10 + ["white"] * 12)
+    camera = dg.Camera.top_down((0.0, 0.0, 12.0, 12.0))
+    image = draw(scene, camera, (12, 12), index="bvh", antialias="coverage").image
+    assert np.abs(image[..., :3] / 255.0 - 0.36).max() <= 0.02
+
+
 def test_neighbours_let_nothing_through() -> None:
     view = scenes.build("map_from_above")
     scene = dg.Scene(view.scene.terrain)
