@@ -12,6 +12,7 @@ stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
+clipmap      memory, generate, rebuild, draw, width: what do the solutions for lines in textures cost?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
 
@@ -20,6 +21,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import (
+    clipmap,
     files,
     indexes,
     interaction,
@@ -54,5 +56,6 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "ring": ring.measure,
     "interaction": interaction.measure,
     "styles": styles.measure,
+    "clipmap": clipmap.measure,
     "volume": volume.measure,
 }

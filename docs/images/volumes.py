@@ -35,7 +35,9 @@ def hillside() -> dg.Frame:
     road = LineString(np.column_stack([40 + 920 * t, 500 + 260 * np.sin(9 * t)]))
     scene.add_lines([road], width=14, width_units="m", color="#7a2e2e", technique=volume)
     scene.add_lines([road], width=6, width_units="m", color="white", technique=volume)
-    return scene.render(dg.Camera.orbit((500.0, 500.0, 0.0), 950.0, 200.0, 28.0), size=ABOVE, antialias="ssaa")
+    return scene.render(
+        dg.Camera.orbit((500.0, 500.0, 0.0), 950.0, 200.0, 28.0), size=ABOVE, antialias="ssaa"
+    )
 
 
 def bars(groups: str) -> dg.Frame:

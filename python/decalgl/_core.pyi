@@ -181,6 +181,7 @@ class VolumeOptions(TechniqueOptions):
 
 class DynamicOptions(TechniqueOptions):
     def __init__(self, method: str, width_rule: str, cell: float) -> None: ...
+
 class NetworkStyle:
     lod: float
     width: float

@@ -37,7 +37,9 @@ def _cut(polygon: shapely.Polygon) -> NDArray[np.float64]:
     ends = np.cumsum(np.bincount(ring[~last])).astype(np.uint32)
     if not vertices.size:
         return np.empty((0, 3, 2))
-    corners: NDArray[np.float64] = vertices[mapbox_earcut.triangulate_float64(vertices, ends)].reshape(-1, 3, 2)
+    corners: NDArray[np.float64] = vertices[mapbox_earcut.triangulate_float64(vertices, ends)].reshape(
+        -1, 3, 2
+    )
     return corners
 
 

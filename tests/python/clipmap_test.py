@@ -1,4 +1,4 @@
-"""Clipmap textures: near the reference from everywhere, the same by every solution, and what the window leaves blurred."""
+"""Clipmap textures: near the reference from everywhere, one picture by every solution, and what windows leave blurred."""
 
 from __future__ import annotations
 
@@ -30,7 +30,14 @@ def zigzag(technique: dg.Technique, width: float, alpha: float = 1.0) -> dg.Scen
     scene = flat_scene()
     line = LineString([(10, 10), (90, 30), (15, 45), (85, 70), (50, 72), (20, 90)])
     scene.add_lines(
-        [line], color="red", alpha=alpha, width=width, width_units="m", cap="butt", corner="miter", technique=technique
+        [line],
+        color="red",
+        alpha=alpha,
+        width=width,
+        width_units="m",
+        cap="butt",
+        corner="miter",
+        technique=technique,
     )
     return scene
 
@@ -40,7 +47,13 @@ def zigzag(technique: dg.Technique, width: float, alpha: float = 1.0) -> dg.Scen
 
 @pytest.mark.parametrize(
     ("name", "bound"),
-    [("hills", 3.0), ("hills_orthographic", 3.5), ("map_from_above", 3.0), ("eye_at_one_metre", 4.0), ("far_coordinates", 4.0)],
+    [
+        ("hills", 3.0),
+        ("hills_orthographic", 3.5),
+        ("map_from_above", 3.0),
+        ("eye_at_one_metre", 4.0),
+        ("far_coordinates", 4.0),
+    ],
 )
 def test_pictures_are_near_those_of_static_layers(name: str, bound: float) -> None:
     view = scenes.build(name)
@@ -83,7 +96,11 @@ def test_line_primitives_are_clamped() -> None:
     for solution in ("1", "4b"):
         scene = flat_scene()
         scene.add_lines(
-            [line], color="red", width=40, width_units="m", technique=dg.Clipmap(solution=solution)  # type: ignore[arg-type]
+            [line],
+            color="red",
+            width=40,
+            width_units="m",
+            technique=dg.Clipmap(solution=solution),  # type: ignore[arg-type]
         )
         widths.append(int((draw(scene).image[:, 50, 1] < 128).sum()))
     assert widths[1] == 40
@@ -111,7 +128,7 @@ def test_wide_angles_are_mitred_and_sharp_ones_bevelled() -> None:
         )
         reach.append(int((draw(scene).image[50, :, 1] < 128).nonzero()[0].max()))
     assert reach[0] == pytest.approx(60 + 8 / np.sin(np.arctan2(30, 40)), abs=1.5)
-    assert reach[1] == pytest.approx(60 + 8 * np.sin(np.arctan2(30, 40)) , abs=2.5)
+    assert reach[1] == pytest.approx(60 + 8 * np.sin(np.arctan2(30, 40)), abs=2.5)
 
 
 # Layers, levels and windows
@@ -166,7 +183,10 @@ def test_more_samples_along_a_pixel_are_sharper_at_a_slant() -> None:
     view = scenes.build("grazing_plain")
     static = judge.draw(dg.Renderer(), view, "coverage")
     errors = [
-        rms(static, judge.draw(dg.Renderer(), view._replace(scene=drawn_by(view.scene, dg.Clipmap(anisotropy=most)))))
+        rms(
+            static,
+            judge.draw(dg.Renderer(), view._replace(scene=drawn_by(view.scene, dg.Clipmap(anisotropy=most)))),
+        )
         for most in (1, 16)
     ]
     assert errors[1] < 0.8 * errors[0]
@@ -194,7 +214,12 @@ def test_ids_and_picking_are_refused() -> None:
 def test_styles_that_tiles_cannot_show_are_refused() -> None:
     scene = flat_scene()
     scene.add_lines(
-        [LineString([(0, 0), (90, 90)])], width=4, width_units="m", dash=(4, 4), name="way", technique=dg.Clipmap()
+        [LineString([(0, 0), (90, 90)])],
+        width=4,
+        width_units="m",
+        dash=(4, 4),
+        name="way",
+        technique=dg.Clipmap(),
     )
     with pytest.raises(dg.UnsupportedError, match=r"'way'.*patterns"):
         scene.render(MAP, SIZE)

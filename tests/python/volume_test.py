@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -56,7 +57,9 @@ def test_ids_are_those_of_the_reference(name: str) -> None:
     seen = judge.own_surface(view, frame)
     points = judge.centres_of(view)
     surface = ref.Surface(seen.world.reshape(-1, 3), seen.depth.reshape(-1), seen.gradient.reshape(-1, 2))
-    allowed = NEAR * judge.footprint(view, points, surface).reshape(frame.ids.shape) + SAGITTA * widest(view.scene)
+    allowed = NEAR * judge.footprint(view, points, surface).reshape(frame.ids.shape) + SAGITTA * widest(
+        view.scene
+    )
     found = judge.judge_ids(view, frame, seen, allowed)
     assert found.far == 0, found
     assert found.wrong <= 60, found
@@ -225,7 +228,7 @@ def test_triangles_cover_what_the_even_odd_rule_says() -> None:
     triangles, first = triangles_of(layer.features)
     a, b, c = triangles.transpose(1, 2, 0)
     areas = np.abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
-    found = [areas[i:j].sum() for i, j in zip(first[:-1], first[1:], strict=True)]
+    found = [areas[i:j].sum() for i, j in itertools.pairwise(first)]
     arms = _odd_area(Polygon(pentagram))
     assert found == pytest.approx([16, 12, 0, 24, arms, _odd_rings(features[5])], abs=1e-9)
 
@@ -255,7 +258,9 @@ def _odd_rings(parts: list[FloatArray]) -> float:
 )
 def test_styles_that_volumes_cannot_show_are_refused(looks: dict[str, Any], what: str) -> None:
     scene = flat_scene()
-    scene.add_lines([LineString([(0, 0), (90, 90)])], width=4, width_units="m", name="way", technique=VOLUME, **looks)
+    scene.add_lines(
+        [LineString([(0, 0), (90, 90)])], width=4, width_units="m", name="way", technique=VOLUME, **looks
+    )
     with pytest.raises(dg.UnsupportedError, match=rf"'way'.*{what}"):
         draw(scene)
 

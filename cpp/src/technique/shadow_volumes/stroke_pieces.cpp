@@ -100,11 +100,11 @@ private:
             const Vector2 coming = direction_[before(i)], going = direction_[i];
             joint = {dot(coming, going), cross(coming, going), false, false};
             const double shorter = std::min(length_[before(i)], length_[i]);
-            const double needed =
-                std::max(inner_length(joint), shape_.half_width * std::abs(joint.turn));
+            const double needed = std::max(inner_length(joint), shape_.half_width * std::abs(joint.turn));
             joint.meets = joint.cosine > -0.99 && needed <= shorter && !crosses_the_one_before(i);
             const bool bends_little = joint.cosine > std::cos(0.5 * shape_.arc_step);
-            joint.is_plain = joint.meets && (shape_.corner == Corner::miter ? !is_sharp(joint) : bends_little);
+            joint.is_plain =
+                joint.meets && (shape_.corner == Corner::miter ? !is_sharp(joint) : bends_little);
         }
         // The last joint of a closed line was not there yet when the first one was looked at.
         if (closed_ && crosses_the_one_before(0))
@@ -115,8 +115,7 @@ private:
         if (!closed_ && i == 0)
             return false;
         const Joint& earlier = joints_[before(i)];
-        return earlier.meets &&
-               inner_length(earlier) + inner_length(joints_[i]) > length_[before(i)];
+        return earlier.meets && inner_length(earlier) + inner_length(joints_[i]) > length_[before(i)];
     }
 
     Vector2 meeting_point(size_t i, double side) const {
@@ -182,8 +181,7 @@ private:
         const int steps = std::max(1, static_cast<int>(std::ceil(angle / shape_.arc_step)));
         const auto at = [&](int step) {
             const double a = angle * step / steps;
-            const Vector2 unit =
-                step == steps ? to : std::cos(a) * from + std::sin(a) * to_the_left(from);
+            const Vector2 unit = step == steps ? to : std::cos(a) * from + std::sin(a) * to_the_left(from);
             return centre + shape_.half_width * unit;
         };
         for (int step = 0; step < steps; ++step) {
