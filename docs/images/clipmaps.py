@@ -1,7 +1,6 @@
 """Draws the picture of docs/techniques/clipmap.md: `python docs/images/clipmaps.py`.
 
-clipmap.png    a view whose lines are wider and wider towards the eye, by solution 4b, by solution 1, with a window that is
-               too small, and with one sample a pixel
+clipmap.png    one view by solution 4b, by solution 1, with twelve tiles, and with one sample a pixel
 """
 
 from __future__ import annotations
