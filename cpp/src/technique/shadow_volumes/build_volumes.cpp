@@ -118,7 +118,7 @@ private:
             most_ =
                 most_over_each_other({view.color()[0], view.color()[1], view.color()[2], view.color()[3]});
             const Features& features = view.layer->features;
-            const PieceFn add = [&](Span<const Vector2> corners, uint32_t) { add_piece(corners, decal); };
+            const PieceFn add = [&](Span<const Vector2> corners) { add_piece(corners, decal); };
             for (int64_t part = features.feature_offsets[view.feature()];
                  part < features.feature_offsets[view.feature() + 1]; ++part) {
                 const Span<const double> xy = features.part(static_cast<size_t>(part));
