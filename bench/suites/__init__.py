@@ -15,6 +15,7 @@ dynamic      D, update_share: what do lines of constant width on the screen cost
 distance_field   sets, drawn, field_memory: what do networks by distance fields cost?
 loops        loops_detail, loops_static, loops_seg_time, loops_constant_time ...: what do levels of detail save?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
+clipmap      memory, generate, rebuild, draw, width: what do the solutions for lines in textures cost?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
 
@@ -25,6 +26,7 @@ from typing import TYPE_CHECKING
 from . import (
     distance_field,
     dynamic,
+    clipmap,
     files,
     indexes,
     interaction,
@@ -61,6 +63,7 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "interaction": interaction.measure,
     "dynamic": dynamic.measure,
     "styles": styles.measure,
+    "clipmap": clipmap.measure,
     "volume": volume.measure,
     "distance_field": distance_field.measure,
     "loops": loops.measure,

@@ -6,8 +6,8 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/frame/scene.h"
-#include "decalgl/technique/dynamic_options.h"
 #include "decalgl/technique/clipmap_options.h"
+#include "decalgl/technique/dynamic_options.h"
 #include "decalgl/technique/volume_options.h"
 #include "decalgl/vector/layer_edit.h"
 #include "register.h"
@@ -143,8 +143,8 @@ void register_scene(py::module_& module) {
     py::class_<TechniqueOptions, std::shared_ptr<TechniqueOptions>>(module, "TechniqueOptions");
     py::class_<clipmap::ClipmapOptions, TechniqueOptions, std::shared_ptr<clipmap::ClipmapOptions>>(
         module, "ClipmapOptions")
-        .def(py::init([](int solution, bool inner_meets, double bevel_below, double thin_below, double widest_line,
-                         int window, int samples, int anisotropy, int tiles_a_frame) {
+        .def(py::init([](int solution, bool inner_meets, double bevel_below, double thin_below,
+                         double widest_line, int window, int samples, int anisotropy, int tiles_a_frame) {
                  clipmap::ClipmapOptions options;
                  options.solution = static_cast<clipmap::LineSolution>(solution);
                  options.inner_meets = inner_meets;

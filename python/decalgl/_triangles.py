@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import mapbox_earcut
@@ -69,7 +70,7 @@ def _odd_faces(rings: shapely.MultiLineString) -> shapely.MultiPolygon:
     inside = np.zeros(len(points), dtype=np.bool_)
     for ring in shapely.get_parts(rings):
         begin = shapely.get_coordinates(ring)
-        for (x0, y0), (x1, y1) in zip(begin[:-1], begin[1:], strict=True):
+        for (x0, y0), (x1, y1) in itertools.pairwise(begin):
             crosses = (points[:, 1] >= y0) != (points[:, 1] >= y1)
             if crosses.any():
                 x = x0 + (points[crosses, 1] - y0) / (y1 - y0) * (x1 - x0)

@@ -38,8 +38,8 @@ class Clipmap(Technique):
     anisotropy: most samples along the longer side of a pixel.
     tiles_a_frame: the most tiles that are drawn for one picture; None: all that it needs.
 
-    It shows what its textures hold: no ids, no picking, no patterns, bands, hatches, slope corrections and outlines on one
-    side; it stays as it was prepared. Raises StyleError for values out of range.
+    It shows what its textures hold: no ids, no picking, no patterns, bands, hatches, slope corrections and outlines
+    on one side; it stays as it was prepared. Raises StyleError for values out of range.
     """
 
     name = "clipmap"

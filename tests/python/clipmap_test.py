@@ -1,4 +1,4 @@
-"""Clipmap textures: near the reference from everywhere, the same by every solution, and what the window leaves blurred."""
+"""Clipmap textures: near the reference from everywhere, one picture by every solution, and what is left blurred."""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -227,7 +228,7 @@ def test_triangles_cover_what_the_even_odd_rule_says() -> None:
     triangles, first = triangles_of(layer.features)
     a, b, c = triangles.transpose(1, 2, 0)
     areas = np.abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2
-    found = [areas[i:j].sum() for i, j in zip(first[:-1], first[1:], strict=True)]
+    found = [areas[i:j].sum() for i, j in itertools.pairwise(first)]
     arms = _odd_area(Polygon(pentagram))
     assert found == pytest.approx([16, 12, 0, 24, arms, _odd_rings(features[5])], abs=1e-9)
 

@@ -13,10 +13,10 @@ SeenTargets::SeenTargets(int width, int height, bool has_overlay, OverlayDepth d
     std::vector<gl::Attachment> attachments{{GL_COLOR_ATTACHMENT0, &overlay}};
     if (depth != OverlayDepth::none) {
         const bool stencil = depth == OverlayDepth::depth_and_stencil;
-        overlay_depth = gl::Texture2D::create(memory, "frame: overlay",
-                                              stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F, width, height);
-        attachments.push_back({stencil ? GLenum{GL_DEPTH_STENCIL_ATTACHMENT} : GLenum{GL_DEPTH_ATTACHMENT},
-                               &overlay_depth});
+        overlay_depth = gl::Texture2D::create(
+            memory, "frame: overlay", stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F, width, height);
+        attachments.push_back(
+            {stencil ? GLenum{GL_DEPTH_STENCIL_ATTACHMENT} : GLenum{GL_DEPTH_ATTACHMENT}, &overlay_depth});
     }
     overlay_framebuffer = gl::Framebuffer::create("overlay", attachments);
 }

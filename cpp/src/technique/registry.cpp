@@ -5,10 +5,10 @@
 #include "decalgl/core/error.h"
 #include "decalgl/technique/technique.h"
 #include "technique/clipmap/clipmap.h"
+#include "technique/distance_field/distance_field.h"
 #include "technique/dynamic_lines/dynamic_lines.h"
 #include "technique/loops/loops.h"
 #include "technique/shadow_volumes/shadow_volumes.h"
-#include "technique/distance_field/distance_field.h"
 #include "technique/static_bvh/static_bvh.h"
 #include "technique/static_decals/static_decals.h"
 

@@ -9,25 +9,25 @@ namespace decalgl::clipmap {
 
 // How lines get into tiles: section 4 of the paper.
 enum class LineSolution : uint8_t {
-    primitives,      // 1: line primitives
-    polygons,        // 2: tessellated before
-    both,            // 3a: 2, and 1 where they are thin
-    wireframe,       // 3b: 2, and its edges where they are thin
-    geometry,        // 4a: tessellated by a geometry shader from a line with adjacency
-    offsets,         // 4b: by offsets that were worked out before
-    polar_offsets    // 4b with offsets in polar coordinates
+    primitives,    // 1: line primitives
+    polygons,      // 2: tessellated before
+    both,          // 3a: 2, and 1 where they are thin
+    wireframe,     // 3b: 2, and its edges where they are thin
+    geometry,      // 4a: tessellated by a geometry shader from a line with adjacency
+    offsets,       // 4b: by offsets that were worked out before
+    polar_offsets  // 4b with offsets in polar coordinates
 };
 
 struct ClipmapOptions : TechniqueOptions {
     LineSolution solution = LineSolution::offsets;
-    bool inner_meets = true;     // bevelled joints by method 3b, else 3a
-    double bevel_below = 90.0;   // degrees between the segments of a joint; wider ones by method 2
-    double thin_below = 1.5;     // texels: thinner lines are line primitives (algorithm 2)
-    double widest_line = 10.0;   // texels of a line primitive, to which wider ones are clamped
-    int window = 0;              // texels of a level that are kept; 0: as many as the picture is wide
-    int samples = 4;             // of a texel: 1, 2 or 4
-    int anisotropy = 8;          // most samples along a pixel's longer side
-    int tiles_a_frame = 0;       // drawn anew for a picture; 0: as many as it needs
+    bool inner_meets = true;    // bevelled joints by method 3b, else 3a
+    double bevel_below = 90.0;  // degrees between the segments of a joint; wider ones by method 2
+    double thin_below = 1.5;    // texels: thinner lines are line primitives (algorithm 2)
+    double widest_line = 10.0;  // texels of a line primitive, to which wider ones are clamped
+    int window = 0;             // texels of a level that are kept; 0: as many as the picture is wide
+    int samples = 4;            // of a texel: 1, 2 or 4
+    int anisotropy = 8;         // most samples along a pixel's longer side
+    int tiles_a_frame = 0;      // drawn anew for a picture; 0: as many as it needs
 
     bool equals(const TechniqueOptions& other) const override {
         const auto* options = dynamic_cast<const ClipmapOptions*>(&other);

@@ -19,24 +19,30 @@ bool is_there(ivec2 texel, int level) {
 // Colour at a place of the finest level, from the level of detail asked for or the next one that is there.
 vec4 color_at(ivec2 texel, vec2 fraction, int detail) {
     int level = finest_level - detail;
-    ivec2 own = texel;
+    ivec2 low = texel;
+    ivec2 high = texel;
     vec2 rest = fraction;
     bool found = false;
     do {
         int shift = finest_level - level;
-        own = texel >> shift;
+        ivec2 own = texel >> shift;
         rest = (vec2(texel & ((1 << shift) - 1)) + fraction) / float(1 << shift);
-        // All tiles that linear filtering reads from.
+        // The four texels that linear filtering reads. Those of the sampler would lie beyond what is there, by its rounding.
         ivec2 limit = ivec2((1 << (level + tile_bits)) - 1);
-        ivec2 low = clamp(own + ivec2(floor(rest - 0.5)), ivec2(0), limit);
-        ivec2 high = min(low + 1, limit);
+        ivec2 first = own + ivec2(floor(rest - 0.5));
+        low = clamp(first, ivec2(0), limit);
+        high = clamp(first + 1, ivec2(0), limit);
         found = level == 0 || (is_there(low, level) && is_there(high, level) &&
                                is_there(ivec2(low.x, high.y), level) && is_there(ivec2(high.x, low.y), level));
         level = found ? level : level - 1;
     } while (!found);
-    int side = window << tile_bits;
-    vec2 at = (vec2(own & (side - 1)) + rest) / float(side);
-    return textureLod(tiles, vec3(at, float(level)), 0.0);
+    int mask = (window << tile_bits) - 1;
+    vec2 share = fract(rest - 0.5);
+    vec4 below = mix(texelFetch(tiles, ivec3(low & mask, level), 0),
+                     texelFetch(tiles, ivec3(high.x & mask, low.y & mask, level), 0), share.x);
+    vec4 above = mix(texelFetch(tiles, ivec3(low.x & mask, high.y & mask, level), 0),
+                     texelFetch(tiles, ivec3(high & mask, level), 0), share.x);
+    return mix(below, above, share.y);
 }
 
 void main() {

@@ -14,7 +14,8 @@ constexpr size_t chunk_segments = 64;
 constexpr double lattice_reach = 1 << (lattice_bits - 1);
 
 [[noreturn]] void refuse(const Layer& layer, const std::string& what) {
-    throw Error(ErrorKind::unsupported, "layer '" + layer.name + "': technique 'clipmap' cannot draw " + what +
+    throw Error(ErrorKind::unsupported, "layer '" + layer.name + "': technique 'clipmap' cannot draw " +
+                                            what +
                                             "; leave that out, or draw the layer with technique 'static'");
 }
 
@@ -41,10 +42,11 @@ void check_layer(const Layer& layer) {
         if (hatch.spacing > 0.0)
             refuse(layer, "hatches");
     if (layer.triangles.first_of.size() != layer.features.feature_count() + 1)
-        throw Error(ErrorKind::unsupported,
-                    "layer '" + layer.name +
-                        "': technique 'clipmap' needs polygons cut into triangles (Layer::triangles), which the "
-                        "Python package does; set them, or draw the layer with technique 'static'");
+        throw Error(
+            ErrorKind::unsupported,
+            "layer '" + layer.name +
+                "': technique 'clipmap' needs polygons cut into triangles (Layer::triangles), which the "
+                "Python package does; set them, or draw the layer with technique 'static'");
 }
 
 bool within_reach(Vector2 p) {
@@ -62,8 +64,8 @@ public:
         for (size_t i = 0; i < decals.size(); ++i) {
             const DecalView view{&input_.layers[decals[i].feature.layer - input_.first_layer], decals[i]};
             const uint8_t* color = view.color();
-            prepared_.decals.push_back({{color[0], color[1], color[2], color[3]},
-                                        static_cast<float>(view.half_width())});
+            prepared_.decals.push_back(
+                {{color[0], color[1], color[2], color[3]}, static_cast<float>(view.half_width())});
             if (view.decal.is_stroke())
                 add_stroke(view);
             else
@@ -79,8 +81,9 @@ public:
 private:
     uint64_t bytes() const {
         return prepared_.fills.size() * sizeof(PlacedVertex) + prepared_.lines.size() * sizeof(PlacedVertex) +
-               prepared_.mesh.size() * sizeof(PlacedVertex) + prepared_.offsets.size() * sizeof(OffsetVertex) +
-               prepared_.chunks.size() * sizeof(Chunk) + prepared_.decals.size() * sizeof(ClipmapDecal);
+               prepared_.mesh.size() * sizeof(PlacedVertex) +
+               prepared_.offsets.size() * sizeof(OffsetVertex) + prepared_.chunks.size() * sizeof(Chunk) +
+               prepared_.decals.size() * sizeof(ClipmapDecal);
     }
 
     Vector2 place(const double* xy) const {
@@ -134,7 +137,8 @@ private:
                     line.push_back(p);
             }
             const bool ring = features.kind == FeatureKind::polygons;
-            if (ring && line.size() > 2 && (line.front().x != line.back().x || line.front().y != line.back().y))
+            if (ring && line.size() > 2 &&
+                (line.front().x != line.back().x || line.front().y != line.back().y))
                 line.push_back(line.front());
             cut_to_reach(line, 2.0 * view.half_width() / prepared_.texture.quantum());
         }
@@ -193,14 +197,16 @@ private:
                                 solution == LineSolution::geometry;
         const bool with_mesh = solution == LineSolution::polygons || solution == LineSolution::both ||
                                solution == LineSolution::wireframe;
-        const bool with_offsets = solution == LineSolution::offsets || solution == LineSolution::polar_offsets;
+        const bool with_offsets =
+            solution == LineSolution::offsets || solution == LineSolution::polar_offsets;
         const size_t first_chunk = prepared_.chunks.size();
         add_chunks(line, half_width);
         if (with_lines)
             add_path(line, closed, first_chunk);
         if (with_mesh || with_offsets)
-            add_pairs(line, corner_pairs(line, closed, half_width,
-                                         {prepared_.options.bevel_below, prepared_.options.inner_meets}),
+            add_pairs(line,
+                      corner_pairs(line, closed, half_width,
+                                   {prepared_.options.bevel_below, prepared_.options.inner_meets}),
                       half_width, with_mesh, first_chunk);
     }
 
@@ -224,7 +230,8 @@ private:
         for (const Vector2& p : line)
             prepared_.lines.push_back(placed(p));
         prepared_.lines.push_back(placed(closed ? line[1] : line.back()));
-        for (size_t first = 0, chunk = first_chunk; first + 1 < line.size(); first += chunk_segments, ++chunk) {
+        for (size_t first = 0, chunk = first_chunk; first + 1 < line.size();
+             first += chunk_segments, ++chunk) {
             const size_t last = std::min(line.size() - 1, first + chunk_segments);
             prepared_.chunks[chunk].line = {start + 1 + static_cast<int32_t>(first),
                                             static_cast<int32_t>(last - first + 1)};
@@ -251,7 +258,8 @@ private:
             const PlacedVertex vertex = placed(at);
             prepared_.offsets.push_back({vertex.x, vertex.y, vertex.decal, packed(pair)});
         }
-        for (size_t first = 0, chunk = first_chunk; first + 1 < line.size(); first += chunk_segments, ++chunk) {
+        for (size_t first = 0, chunk = first_chunk; first + 1 < line.size();
+             first += chunk_segments, ++chunk) {
             const size_t last = std::min(line.size() - 1, first + chunk_segments);
             // A joint between two chunks belongs to the first with all its pairs.
             const int32_t begin = first == 0 ? 0 : last_pair[first], end = last_pair[last] + 1;

@@ -97,7 +97,8 @@ void Clipmap::set_place(const View& view, const GBufferView& gbuffer, gl::Progra
     program.set("surface_texture", 1);
     gbuffer.surface->bind(1);
     const double texel = prepared_->texture.texel(finest_level);
-    program.set("first_block", glm::ivec2(prepared_->texture.first_block_x, prepared_->texture.first_block_y));
+    program.set("first_block",
+                glm::ivec2(prepared_->texture.first_block_x, prepared_->texture.first_block_y));
     program.set("texels_per_block", static_cast<int>(std::lrint(view.positions.block_size / texel)));
     program.set("texels_per_metre", static_cast<float>(1.0 / texel));
     program.set("anisotropy", static_cast<float>(prepared_->options.anisotropy));

@@ -59,15 +59,16 @@ struct Joint {
 
 }  // namespace
 
-std::vector<CornerPair> corner_pairs(Span<const Vector2> line, bool closed, double half_width, JointRule rule) {
+std::vector<CornerPair> corner_pairs(Span<const Vector2> line, bool closed, double half_width,
+                                     JointRule rule) {
     std::vector<CornerPair> pairs;
     const size_t last = line.size() - 1;
     const auto joint_at = [&](size_t before, size_t at, size_t after) {
         const auto span = [&](size_t a, size_t b) {
             return std::hypot(line[b].x - line[a].x, line[b].y - line[a].y) / half_width;
         };
-        return Joint{static_cast<uint32_t>(at), direction(line[before], line[at]), direction(line[at], line[after]),
-                     std::min(span(before, at), span(at, after))};
+        return Joint{static_cast<uint32_t>(at), direction(line[before], line[at]),
+                     direction(line[at], line[after]), std::min(span(before, at), span(at, after))};
     };
     const auto add_end = [&](size_t at, Vector2 along) {
         const Vector2 across = to_the_left(along);

@@ -27,6 +27,7 @@ struct JointRule {
 };
 
 // Of a line, or of a ring that ends with its first vertex; no vertex equals the one before it.
-std::vector<CornerPair> corner_pairs(Span<const Vector2> line, bool closed, double half_width, JointRule rule);
+std::vector<CornerPair> corner_pairs(Span<const Vector2> line, bool closed, double half_width,
+                                     JointRule rule);
 
 }  // namespace decalgl::clipmap

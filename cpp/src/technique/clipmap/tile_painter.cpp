@@ -36,7 +36,8 @@ TilePainter::TilePainter(const PreparedClipmap& prepared, const MemoryAccount& m
     mesh_array_ = array_of(mesh_, false);
     offset_array_ = array_of(offsets_, true);
     const int samples = prepared.options.samples > 1 ? prepared.options.samples : 0;
-    canvas_ = gl::Texture2D::create(memory, "clipmap: canvas", GL_RGBA8, tile_texels, tile_texels, 1, samples);
+    canvas_ =
+        gl::Texture2D::create(memory, "clipmap: canvas", GL_RGBA8, tile_texels, tile_texels, 1, samples);
     canvas_framebuffer_ = gl::Framebuffer::create("tile", {{GL_COLOR_ATTACHMENT0, &canvas_}});
     GLuint layer = 0;
     glCreateFramebuffers(1, &layer);
@@ -120,8 +121,9 @@ void TilePainter::draw(const PreparedClipmap& prepared, const Tile& tile, const 
     glNamedFramebufferTextureLayer(layer_framebuffer_.name(), GL_COLOR_ATTACHMENT0, store.texels().id(), 0,
                                    tile.level);
     const int x = store.texel_x(tile), y = store.texel_y(tile);
-    glBlitNamedFramebuffer(canvas_framebuffer_.id(), layer_framebuffer_.name(), 0, 0, tile_texels, tile_texels, x, y,
-                           x + tile_texels, y + tile_texels, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBlitNamedFramebuffer(canvas_framebuffer_.id(), layer_framebuffer_.name(), 0, 0, tile_texels,
+                           tile_texels, x, y, x + tile_texels, y + tile_texels, GL_COLOR_BUFFER_BIT,
+                           GL_NEAREST);
 }
 
 void TilePainter::draw_run(const PreparedClipmap& prepared, Form form, double texels, const Tile& tile,
@@ -139,15 +141,16 @@ void TilePainter::draw_run(const PreparedClipmap& prepared, Form form, double te
     program.set("clipmap_decals", 0);
     decals_.bind(0);
     const auto side = int64_t{1} << (lattice_bits - tile.level);
-    program.set("tile_place", glm::ivec2(static_cast<int32_t>(tile.x * side), static_cast<int32_t>(tile.y * side)));
+    program.set("tile_place",
+                glm::ivec2(static_cast<int32_t>(tile.x * side), static_cast<int32_t>(tile.y * side)));
     program.set("clip_per_quantum", static_cast<float>(2.0 / static_cast<double>(side)));
     // Lines are a texel wide at least: thinner ones are fainter.
     program.set("opacity", static_cast<float>(as_lines ? std::min(1.0, texels) : 1.0));
     if (form == Form::adjacent || form == Form::offsets)
         program.set("clip_per_half_width", static_cast<float>(texels / tile_texels));
     if (form == Form::adjacent) {
-        program.set("bevel_cosine",
-                    static_cast<float>(-std::cos(prepared.options.bevel_below * 3.14159265358979323846 / 180.0)));
+        program.set("bevel_cosine", static_cast<float>(-std::cos(prepared.options.bevel_below *
+                                                                 3.14159265358979323846 / 180.0)));
         program.set("inner_meets", prepared.options.inner_meets);
     }
     const double widest = form == Form::wire ? 1.0 : prepared.options.widest_line;
@@ -156,13 +159,13 @@ void TilePainter::draw_run(const PreparedClipmap& prepared, Form form, double te
         glEnable(GL_LINE_SMOOTH);
     if (form == Form::wire)
         glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    const gl::VertexArray& array = form == Form::fill ? fill_array_
-                                   : by_offsets       ? offset_array_
+    const gl::VertexArray& array = form == Form::fill                           ? fill_array_
+                                   : by_offsets                                 ? offset_array_
                                    : (form == Form::mesh || form == Form::wire) ? mesh_array_
                                                                                 : line_array_;
     array.bind();
-    const GLenum mode = form == Form::fill       ? GL_TRIANGLES
-                        : form == Form::adjacent ? GL_LINE_STRIP_ADJACENCY
+    const GLenum mode = form == Form::fill                           ? GL_TRIANGLES
+                        : form == Form::adjacent                     ? GL_LINE_STRIP_ADJACENCY
                         : (form == Form::mesh || form == Form::wire) ? GL_TRIANGLE_STRIP
                                                                      : GL_LINE_STRIP;
     glMultiDrawArrays(mode, firsts_.data(), counts_.data(), static_cast<GLsizei>(firsts_.size()));

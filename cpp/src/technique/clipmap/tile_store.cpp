@@ -47,8 +47,6 @@ TileStore::TileStore(int window, const MemoryAccount& memory)
       readable_(2 * slots_.size(), 0) {
     texels_ = gl::Texture2D::create_array(memory, "clipmap: tiles", GL_RGBA8, window * tile_texels,
                                           window * tile_texels, level_count);
-    texels_.set_filter(GL_LINEAR, GL_LINEAR);
-    texels_.set_wrap(GL_REPEAT, GL_REPEAT);
     table_ = gl::Texture2D::create(memory, "clipmap: table", GL_RGBA16UI, window, window * level_count);
 }
 

@@ -43,10 +43,11 @@ void check_layer(const Layer& layer) {
         if (hatch.spacing > 0.0)
             refuse(layer, "hatches");
     if (layer.triangles.first_of.size() != layer.features.feature_count() + 1)
-        throw Error(ErrorKind::unsupported,
-                    "layer '" + layer.name +
-                        "': technique 'volume' needs polygons cut into triangles (Layer::triangles), which the "
-                        "Python package does; set them, or draw the layer with technique 'static'");
+        throw Error(
+            ErrorKind::unsupported,
+            "layer '" + layer.name +
+                "': technique 'volume' needs polygons cut into triangles (Layer::triangles), which the "
+                "Python package does; set them, or draw the layer with technique 'static'");
 }
 
 class VolumeBuilder {
@@ -82,8 +83,7 @@ private:
     class DecalMesher {
     public:
         DecalMesher(const VolumeBuilder& builder, MeshedVolumes& block)
-            : builder_(builder),
-              mesher_(builder.heights_, block) {}
+            : builder_(builder), mesher_(builder.heights_, block) {}
 
         void mesh(uint32_t decal) {
             const DecalView view = builder_.view_of(builder_.prepared_.decals[decal]);
@@ -98,7 +98,8 @@ private:
     private:
         void mesh_fill(const DecalView& view) {
             const Triangles& triangles = view.layer->triangles;
-            const auto first = triangles.first_of[view.feature()], end = triangles.first_of[view.feature() + 1];
+            const auto first = triangles.first_of[view.feature()],
+                       end = triangles.first_of[view.feature() + 1];
             for (int64_t t = first; t < end; ++t) {
                 std::array<Vector2, 3> corners;
                 for (size_t i = 0; i < 3; ++i) {
@@ -112,12 +113,12 @@ private:
         void mesh_stroke(uint32_t decal, const DecalView& view) {
             in_cell_.resize(builder_.cells_.count(), 0);
             const StrokeStyle& style = view.style();
-            const StrokeShape shape{view.half_width() / builder_.prepared_.lattice.quantum, style.corner, style.cap,
-                                    style.miter_limit, builder_.options_.arc_step * pi / 180.0};
-            most_ = most_over_each_other(
-                {view.color()[0], view.color()[1], view.color()[2], view.color()[3]});
+            const StrokeShape shape{view.half_width() / builder_.prepared_.lattice.quantum, style.corner,
+                                    style.cap, style.miter_limit, builder_.options_.arc_step * pi / 180.0};
+            most_ =
+                most_over_each_other({view.color()[0], view.color()[1], view.color()[2], view.color()[3]});
             const Features& features = view.layer->features;
-            const PieceFn add = [&](Span<const Vector2> corners, uint32_t) { add_piece(corners, decal); };
+            const PieceFn add = [&](Span<const Vector2> corners) { add_piece(corners, decal); };
             for (int64_t part = features.feature_offsets[view.feature()];
                  part < features.feature_offsets[view.feature() + 1]; ++part) {
                 const Span<const double> xy = features.part(static_cast<size_t>(part));
@@ -186,7 +187,8 @@ private:
         constexpr uint64_t most = uint64_t{1} << 31;
         if (2 * vertices >= most || corners >= most)
             throw Error(ErrorKind::memory,
-                        "technique 'volume': the meshes would have more than 2^31 corners; draw fewer features, or use "
+                        "technique 'volume': the meshes would have more than 2^31 corners; draw fewer "
+                        "features, or use "
                         "technique 'static'");
         prepared_.charge.resize(vertices * sizeof(VolumeVertex) + corners * sizeof(uint32_t));
         prepared_.vertices.reserve(vertices);
@@ -250,9 +252,9 @@ std::unique_ptr<const PreparedVolumes> build_volumes(const TechniqueInput& input
     prepared->lattice = Lattice::over(input.bounds);
     prepared->decals = decals_of(input.layers, input.first_layer);
     for (const Decal& decal : prepared->decals)
-        prepared->widest = std::max(
-            prepared->widest,
-            DecalView{&input.layers[decal.feature.layer - input.first_layer], decal}.half_width());
+        prepared->widest =
+            std::max(prepared->widest,
+                     DecalView{&input.layers[decal.feature.layer - input.first_layer], decal}.half_width());
     count_segments(input, *prepared);
     VolumeBuilder(input, *prepared).build(progress);
     progress.report(1.0);

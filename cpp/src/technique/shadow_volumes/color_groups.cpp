@@ -72,7 +72,8 @@ private:
                 if (needed <= lowest)
                     continue;
                 const auto corner = [&](uint32_t k) {
-                    const VolumeVertex& at = prepared_.vertices[prepared_.corners[entry.first_corner + k] / 2];
+                    const VolumeVertex& at =
+                        prepared_.vertices[prepared_.corners[entry.first_corner + k] / 2];
                     return LatticePoint{at.x, at.y};
                 };
                 if (lie_over_each_other(triangle, {corner(0), corner(1), corner(2)}))
@@ -224,8 +225,8 @@ void sort_volumes(std::vector<VolumeOrder> order, PreparedVolumes& prepared) {
     sorted.reserve(order.size());
     for (const VolumeOrder& each : order) {
         const auto place = static_cast<uint32_t>(sorted.size());
-        const bool goes_on = place > 0 && order[place - 1].group == each.group &&
-                             order[place - 1].batch == each.batch;
+        const bool goes_on =
+            place > 0 && order[place - 1].group == each.group && order[place - 1].batch == each.batch;
         if (!goes_on)
             prepared.batches.push_back({each.group, place, 0});
         ++prepared.batches.back().volume_count;
@@ -250,9 +251,8 @@ void group_by_color(Span<const Color> colors, Grouping grouping, const OverlapCe
     if (colors.empty())
         return;
     const bool is_simple = grouping == Grouping::colors || has_one_opaque_color(colors);
-    const std::vector<uint32_t> group_of = is_simple
-                                               ? groups_by_color(colors, prepared)
-                                               : ExactGrouping(colors, cells, prepared).run(progress);
+    const std::vector<uint32_t> group_of =
+        is_simple ? groups_by_color(colors, prepared) : ExactGrouping(colors, cells, prepared).run(progress);
     std::vector<VolumeOrder> order;
     for (uint32_t i = 0; i < prepared.volumes.size(); ++i) {
         const Volume& volume = prepared.volumes[i];

@@ -18,8 +18,9 @@ void HeightRanges::add_finest() {
     for (int row = 0; row < level.rows; ++row) {
         for (int column = 0; column < level.columns; ++column) {
             HeightRange range;
-            for (const float height : {terrain_.height(row, column), terrain_.height(row, column + 1),
-                                       terrain_.height(row + 1, column), terrain_.height(row + 1, column + 1)}) {
+            for (const float height :
+                 {terrain_.height(row, column), terrain_.height(row, column + 1),
+                  terrain_.height(row + 1, column), terrain_.height(row + 1, column + 1)}) {
                 if (!std::isnan(height))
                     range.add({height, height});
             }

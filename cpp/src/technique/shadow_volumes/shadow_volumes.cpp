@@ -21,14 +21,16 @@ constexpr GLuint counted_bits = 0x7F;  // of translucent groups
 constexpr GLint covered_bit = 0x80;    // by earlier batches
 
 [[noreturn]] void refuse_files() {
-    throw Error(ErrorKind::unsupported,
-                "technique 'volume' is not kept on disk; draw the layer with technique 'static' to save the scene");
+    throw Error(
+        ErrorKind::unsupported,
+        "technique 'volume' is not kept on disk; draw the layer with technique 'static' to save the scene");
 }
 
 [[noreturn]] void refuse_changes() {
-    throw Error(ErrorKind::unsupported,
-                "technique 'volume' stays as it was prepared; draw the layer with technique 'static' to restyle or "
-                "edit it");
+    throw Error(
+        ErrorKind::unsupported,
+        "technique 'volume' stays as it was prepared; draw the layer with technique 'static' to restyle or "
+        "edit it");
 }
 
 }  // namespace
@@ -74,9 +76,10 @@ void ShadowVolumes::upload(std::shared_ptr<const Prepared> prepared, std::shared
 
 UpdateReport ShadowVolumes::update(const View& view) {
     if (view.antialias == Antialias::coverage)
-        throw Error(ErrorKind::unsupported,
-                    "technique 'volume' masks whole pixels and cannot draw antialias='coverage'; use 'ssaa', 'msaa', "
-                    "'fxaa' or 'none', or draw the layers with technique 'static'");
+        throw Error(
+            ErrorKind::unsupported,
+            "technique 'volume' masks whole pixels and cannot draw antialias='coverage'; use 'ssaa', 'msaa', "
+            "'fxaa' or 'none', or draw the layers with technique 'static'");
     UpdateReport report;
     report.pieces = prepared_->corners.size() / 3;
     report.bytes = vertices_.buffer().bytes() + corners_.bytes();
@@ -182,13 +185,15 @@ void ShadowVolumes::draw(const View& view, const GBufferView& gbuffer, gl::Progr
     in_hand_ = {};
     for (size_t i = 0; i < prepared_->batches.size(); ++i) {
         const Batch& batch = prepared_->batches[i];
-        const bool goes_on = i + 1 < prepared_->batches.size() && prepared_->batches[i + 1].group == batch.group;
+        const bool goes_on =
+            i + 1 < prepared_->batches.size() && prepared_->batches[i + 1].group == batch.group;
         const std::array<uint8_t, 4>& color = prepared_->groups[batch.group].color;
         const bool is_opaque = color[3] == 255;
         count(batch.first_volume, batch.first_volume + batch.volume_count, volume_at, counting);
         if (in_hand_.empty())
             continue;
-        glScissor(in_hand_.left, in_hand_.bottom, in_hand_.right - in_hand_.left, in_hand_.top - in_hand_.bottom);
+        glScissor(in_hand_.left, in_hand_.bottom, in_hand_.right - in_hand_.left,
+                  in_hand_.top - in_hand_.bottom);
         mask.use();
         if (goes_on && !is_opaque) {
             fold();

@@ -44,9 +44,9 @@ private:
     gl::Buffer corners_;
     gl::VertexArray mesh_;
     gl::VertexArray no_vertices_;
-    volume::VolumeView seen_;       // of the view in hand
-    volume::ScreenBox in_hand_;     // where the volumes that are counted may show
-    std::vector<GLsizei> counts_;   // of runs of volumes that are next to each other
+    volume::VolumeView seen_;      // of the view in hand
+    volume::ScreenBox in_hand_;    // where the volumes that are counted may show
+    std::vector<GLsizei> counts_;  // of runs of volumes that are next to each other
     std::vector<const void*> starts_;
 };
 

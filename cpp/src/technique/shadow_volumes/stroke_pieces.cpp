@@ -63,8 +63,8 @@ public:
                 add_wedge(i);
         if (!closed_ && shape_.cap == Cap::round) {
             const Vector2 begin = to_the_left(direction_.front()), end = to_the_left(direction_.back());
-            add_fan(vertices_.front(), begin, -1.0 * begin, pi, number_++);
-            add_fan(vertices_.back(), -1.0 * end, end, pi, number_++);
+            add_fan(vertices_.front(), begin, -1.0 * begin, pi);
+            add_fan(vertices_.back(), -1.0 * end, end, pi);
         }
     }
 
@@ -100,11 +100,11 @@ private:
             const Vector2 coming = direction_[before(i)], going = direction_[i];
             joint = {dot(coming, going), cross(coming, going), false, false};
             const double shorter = std::min(length_[before(i)], length_[i]);
-            const double needed =
-                std::max(inner_length(joint), shape_.half_width * std::abs(joint.turn));
+            const double needed = std::max(inner_length(joint), shape_.half_width * std::abs(joint.turn));
             joint.meets = joint.cosine > -0.99 && needed <= shorter && !crosses_the_one_before(i);
             const bool bends_little = joint.cosine > std::cos(0.5 * shape_.arc_step);
-            joint.is_plain = joint.meets && (shape_.corner == Corner::miter ? !is_sharp(joint) : bends_little);
+            joint.is_plain =
+                joint.meets && (shape_.corner == Corner::miter ? !is_sharp(joint) : bends_little);
         }
         // The last joint of a closed line was not there yet when the first one was looked at.
         if (closed_ && crosses_the_one_before(0))
@@ -115,8 +115,7 @@ private:
         if (!closed_ && i == 0)
             return false;
         const Joint& earlier = joints_[before(i)];
-        return earlier.meets &&
-               inner_length(earlier) + inner_length(joints_[i]) > length_[before(i)];
+        return earlier.meets && inner_length(earlier) + inner_length(joints_[i]) > length_[before(i)];
     }
 
     Vector2 meeting_point(size_t i, double side) const {
@@ -153,7 +152,7 @@ private:
         corners[count++] = begin.left;
         if (begin.has_middle)
             corners[count++] = vertices_[segment];
-        add_({corners.data(), count}, number_++);
+        add_({corners.data(), count});
     }
 
     void add_wedge(size_t i) {
@@ -166,29 +165,28 @@ private:
         const Vector2 v = vertices_[i];
         const double r = shape_.half_width;
         if (shape_.corner == Corner::round || (shape_.corner == Corner::miter && is_sharp(joint))) {
-            add_fan(v, first, last, std::atan2(std::abs(joint.turn), joint.cosine), number_++);
+            add_fan(v, first, last, std::atan2(std::abs(joint.turn), joint.cosine));
         } else if (shape_.corner == Corner::miter) {
             const std::array<Vector2, 4> corners{v, v + r * first, meeting_point(i, to_left ? -1.0 : 1.0),
                                                  v + r * last};
-            add_(corners, number_++);
+            add_(corners);
         } else if (joint.cosine > -1.0 + 1e-12) {
             const std::array<Vector2, 3> corners{v, v + r * first, v + r * last};
-            add_(corners, number_++);
+            add_(corners);
         }
     }
 
     // Triangles from a point over an arc between two unit vectors, counter-clockwise.
-    void add_fan(Vector2 centre, Vector2 from, Vector2 to, double angle, uint32_t number) {
+    void add_fan(Vector2 centre, Vector2 from, Vector2 to, double angle) {
         const int steps = std::max(1, static_cast<int>(std::ceil(angle / shape_.arc_step)));
         const auto at = [&](int step) {
             const double a = angle * step / steps;
-            const Vector2 unit =
-                step == steps ? to : std::cos(a) * from + std::sin(a) * to_the_left(from);
+            const Vector2 unit = step == steps ? to : std::cos(a) * from + std::sin(a) * to_the_left(from);
             return centre + shape_.half_width * unit;
         };
         for (int step = 0; step < steps; ++step) {
             const std::array<Vector2, 3> corners{centre, at(step), at(step + 1)};
-            add_(corners, number);
+            add_(corners);
         }
     }
 
@@ -196,11 +194,11 @@ private:
         const double r = shape_.half_width;
         const Vector2 v = vertices_.front();
         if (shape_.cap == Cap::round)
-            add_fan(v, {1.0, 0.0}, {1.0, 0.0}, 2.0 * pi, number_++);
+            add_fan(v, {1.0, 0.0}, {1.0, 0.0}, 2.0 * pi);
         if (shape_.cap == Cap::square) {
             const std::array<Vector2, 4> corners{v + Vector2{-r, -r}, v + Vector2{r, -r}, v + Vector2{r, r},
                                                  v + Vector2{-r, r}};
-            add_(corners, number_++);
+            add_(corners);
         }
     }
 
@@ -209,7 +207,6 @@ private:
     const StrokeShape& shape_;
     const PieceFn& add_;
     size_t segments_ = 0;
-    uint32_t number_ = 0;
     std::vector<double> length_;
     std::vector<Vector2> direction_;
     std::vector<Joint> joints_;

@@ -16,9 +16,8 @@
 
 namespace decalgl::volume {
 
-// Called with the corners of a convex piece, counter-clockwise, and its number: pieces of one number do not
-// lie over each other.
-using PieceFn = std::function<void(Span<const Vector2> corners, uint32_t number)>;
+// Called with the corners of a convex piece, counter-clockwise.
+using PieceFn = std::function<void(Span<const Vector2> corners)>;
 
 struct StrokeShape {
     double half_width;  // quanta

@@ -7,7 +7,8 @@ namespace {
 
 // The part of a convex polygon on one side of a line of the lattice. Cuts are worked out in one direction, so that
 // neighbours are cut at the same point.
-std::vector<Vector2> cut(const std::vector<Vector2>& polygon, double Vector2::*axis, double line, bool below) {
+std::vector<Vector2> cut(const std::vector<Vector2>& polygon, double Vector2::*axis, double line,
+                         bool below) {
     const auto keeps = [&](Vector2 p) { return below ? p.*axis <= line : p.*axis >= line; };
     std::vector<Vector2> kept;
     for (size_t i = 0; i < polygon.size(); ++i) {
@@ -89,8 +90,9 @@ void VolumeMesher::finish(uint32_t decal) {
     if (points_.empty())
         return;
     add_vertices();
-    Volume volume{decal, static_cast<uint32_t>(result_.corners.size()), 0,
-                  static_cast<uint32_t>(triangles_.size()), {}, {}};
+    Volume volume{decal, static_cast<uint32_t>(result_.corners.size()),
+                  0,     static_cast<uint32_t>(triangles_.size()),
+                  {},    {}};
     for (const uint32_t vertex : triangles_) {
         const VolumeVertex& at = result_.vertices[vertex];
         volume.box.add(LatticePoint{at.x, at.y});

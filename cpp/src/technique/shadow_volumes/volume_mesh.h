@@ -38,10 +38,10 @@ private:
 
     const HeightRanges& heights_;
     MeshedVolumes& result_;
-    std::vector<uint64_t> points_;         // three a triangle: x and y in one number
-    std::vector<HeightRange> ranges_;      // one a triangle
-    std::vector<uint64_t> known_;          // the points, each once
-    std::vector<uint32_t> triangles_;      // places of vertices, three each
+    std::vector<uint64_t> points_;     // three a triangle: x and y in one number
+    std::vector<HeightRange> ranges_;  // one a triangle
+    std::vector<uint64_t> known_;      // the points, each once
+    std::vector<uint32_t> triangles_;  // places of vertices, three each
 };
 
 }  // namespace decalgl::volume

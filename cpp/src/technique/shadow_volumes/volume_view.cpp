@@ -20,9 +20,10 @@ VolumeView::VolumeView(const View& view, const Lattice& lattice, int width, int 
       width_(width),
       height_(height) {
     const PositionGrid& positions = view.positions;
-    const glm::dvec2 base(
-        positions.origin_x + block_->base_block.x * positions.block_size + static_cast<double>(block_->base_offset.x),
-        positions.origin_y + block_->base_block.y * positions.block_size + static_cast<double>(block_->base_offset.y));
+    const glm::dvec2 base(positions.origin_x + block_->base_block.x * positions.block_size +
+                              static_cast<double>(block_->base_offset.x),
+                          positions.origin_y + block_->base_block.y * positions.block_size +
+                              static_cast<double>(block_->base_offset.y));
     const Vector2 place = lattice.place(base.x, base.y);
     base_ = {place.x, place.y};
     base_place_ = {whole_part(place.x), whole_part(place.y)};
@@ -49,7 +50,8 @@ ScreenBox VolumeView::box_of(const Volume& volume) const {
         const double along = glm::dot(forward, at);
         const double pixel =
             glm::length(glm::dvec3(block_->ray_origin_dy) + along * glm::dvec3(block_->ray_direction_dy));
-        const double apart = pixels_apart_ * pixel + 2e-6 * std::abs(static_cast<double>(block_->forward.w) + along);
+        const double apart =
+            pixels_apart_ * pixel + 2e-6 * std::abs(static_cast<double>(block_->forward.w) + along);
         at.z += is_lid ? apart : -apart;
         const glm::dvec4 clip = glm::dmat4(block_->clip_from_base) * glm::dvec4(at, 1.0);
         if (clip.w <= 0.0) {
@@ -69,8 +71,9 @@ ScreenBox VolumeView::box_of(const Volume& volume) const {
         return static_cast<int>(std::clamp(std::floor(at), 0.0, static_cast<double>(most)));
     };
     const glm::ivec4& picture = block_->picture;
-    return {pixel(low.x, picture.z, picture.x, -2.0, width_), pixel(low.y, picture.w, picture.y, -2.0, height_),
-            pixel(high.x, picture.z, picture.x, 3.0, width_), pixel(high.y, picture.w, picture.y, 3.0, height_)};
+    return {
+        pixel(low.x, picture.z, picture.x, -2.0, width_), pixel(low.y, picture.w, picture.y, -2.0, height_),
+        pixel(high.x, picture.z, picture.x, 3.0, width_), pixel(high.y, picture.w, picture.y, 3.0, height_)};
 }
 
 }  // namespace decalgl::volume
