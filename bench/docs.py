@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "bench" / "results" / "latest.json"
 PAGES = (
     ROOT / "README.md",
+    ROOT / "docs" / "interaction.md",
     ROOT / "docs" / "techniques" / "static.md",
     ROOT / "docs" / "techniques" / "distance_field.md",
 )

@@ -74,9 +74,11 @@ RATIOS = {
     "filter": Ratio("{filter_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
     "edit": Ratio("{edit_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
     "lens": Ratio("{lens_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms"),
-    "restyled": Ratio("{restyled_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
+    "restyled": Ratio("{restyled_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms", most=2.0),
     "reorder": Ratio("{reorder_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
     "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
     "style": Ratio("{style_ms:.1f} ms ÷ plain {plain_ms:.1f} ms"),
+    "D": Ratio("lists {lists_ms:.0f} ms ÷ bins {bins_ms:.0f} ms", least=1.0, scenes="pixel lines"),
+    "update_share": Ratio("{bins_update_ms:.0f} ms of {bins_ms:.0f} ms, bins"),
     "mode": Ratio("frames of {mode_ms:.0f} ms ÷ {none_ms:.0f} ms"),
 }

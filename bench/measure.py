@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     Times = dict[str, float]
     Measure = Callable[[], Times]
 
+LAYER_PASSES = ("static", "static_bvh", "volume", "clipmap")
 # A picture that costs next to nothing, for what a frame tells about its scene.
 SMALL_PICTURE = (16, 16)
 
@@ -42,7 +43,7 @@ def drawing(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str)
     def measure() -> Times:
         passes = draw(renderer, camera, antialias).stats.passes
         centres = _before_silhouettes(passes)
-        layers = sum(one["ms"] for one in centres if one["name"].startswith("static"))
+        layers = sum(one["ms"] for one in centres if one["name"] in LAYER_PASSES)
         ground = sum(one["ms"] for one in centres if one["name"] in ("terrain", "compose"))
         frame = sum(one["ms"] for one in passes)
         return {f"{name}_ms": layers, f"{name}_ground_ms": ground, f"{name}_frame_ms": frame}

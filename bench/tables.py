@@ -76,6 +76,15 @@ STACKS = {
     "alpha 0.5": "{half_ms:.1f} ms",
     "alpha 1/255": "{faint_ms:.1f} ms",
 }
+CHANGES = {
+    "scene": "{scene}",
+    "new colours": "{restyle:.2f}",
+    "the picture after": "{restyled:.2f}",
+    "a filter": "{filter:.2f}",
+    "100 features moved": "{edit:.2f}",
+    "a draw order": "{reorder:.2f}",
+    "the lens moved, and drawn": "{lens:.2f}",
+}
 BY_STYLE = {"scene": "{scene}", "index": "`{index}`"}
 STYLES = {
     **BY_STYLE,
@@ -186,6 +195,11 @@ def networks(results: Results) -> str:
     return "\n\n".join([_table(list(drawn.values()), NETWORKS), _table(fields, FIELDS)])
 
 
+def changes(results: Results) -> str:
+    """What changes of a map take, in frames of the view of all of it."""
+    return "\n\n".join([_table(_having(results, "restyle"), CHANGES), machine(results)])
+
+
 BLOCKS: dict[str, Callable[[Results], str]] = {
     "summary": summary,
     "ratios": ratios,
@@ -194,6 +208,7 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "extremes": extremes,
     "styles": styles,
     "networks": networks,
+    "changes": changes,
 }
 
 

@@ -1,4 +1,5 @@
-"""Finds where in a pixel samples lie: `cpp/shaders/shared/sample_offsets.h`, `cpp/src/frame/sample_pattern.cpp`.
+"""Finds where in a pixel samples lie: `area_samples.h` and `sample_offsets.h` of `cpp/shaders/shared`,
+`cpp/src/frame/sample_pattern.cpp`.
 
 Among many scrambled (0, m, 2)-nets (Sobol' points with Owen's scrambling), keeps the one whose mean over the samples
 errs least, in the root mean square, on straight edges at every angle and offset that cross the pixel.
@@ -73,13 +74,15 @@ def best_net(bits: int) -> tuple[np.ndarray, float, float]:
 
 
 def main() -> None:
-    for bits in range(1, 6):
+    for bits in range(1, 7):
         net, rms, worst = best_net(bits)
         print(f"{len(net)} samples, on straight edges: rms {rms:.4f}, largest {worst:.4f}")
         print("rows by column:", ", ".join(str(row) for row in net[np.argsort(net[:, 0]), 1]))
-    offsets = (net + 0.5) / len(net) - 0.5
-    for row in range(0, len(net), 4):
-        print("   ", ", ".join(f"vec2({x:.6f}, {y:.6f})" for x, y in offsets[row : row + 4]))
+        if bits < 5:
+            continue
+        offsets = (net + 0.5) / len(net) - 0.5
+        for row in range(0, len(net), 3):
+            print("   ", ", ".join(f"vec2({x:.7g}, {y:.7g})" for x, y in offsets[row : row + 3]))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,9 @@ stacks       opaque_stack: what do thousands of overlapping polygons cost?
 ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
 distance_field   sets, drawn, field_memory: what do networks by distance fields cost?
+dynamic      D, update_share: what do lines of constant width on the screen cost, by tiles and by lists?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
+volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from typing import TYPE_CHECKING
 
 from . import (
     distance_field,
+    dynamic,
     files,
     indexes,
     interaction,
@@ -33,6 +36,7 @@ from . import (
     stacks,
     styles,
     views,
+    volume,
 )
 
 if TYPE_CHECKING:
@@ -53,6 +57,8 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "stacks": stacks.measure,
     "ring": ring.measure,
     "interaction": interaction.measure,
+    "dynamic": dynamic.measure,
     "styles": styles.measure,
     "distance_field": distance_field.measure,
+    "volume": volume.measure,
 }

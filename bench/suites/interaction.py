@@ -3,7 +3,7 @@
 restyle     new colours of all features ÷ a frame          filter    half of them hidden ÷ a frame
 edit        a hundred neighbours moved ÷ a frame           lens      the lens moved, and drawn ÷ a frame
 reorder     all features in another draw order ÷ a frame
-restyled    the first picture after a restyle ÷ a frame: where it shows levels of detail, they are made anew
+restyled    the first picture after a restyle ÷ a frame: where it shows levels of detail, they are coloured anew
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ PYBIND11_MODULE(_core, module) {
     decalgl::bindings::register_errors(module);
     decalgl::bindings::register_styles(module);
     decalgl::bindings::register_scene(module);
+    decalgl::bindings::register_loops(module);
     decalgl::bindings::register_distance_field(module);
     decalgl::bindings::register_renderer(module);
     decalgl::bindings::register_doctor(module);

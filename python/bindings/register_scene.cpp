@@ -6,6 +6,8 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/frame/scene.h"
+#include "decalgl/technique/dynamic_options.h"
+#include "decalgl/technique/volume_options.h"
 #include "decalgl/vector/layer_edit.h"
 #include "register.h"
 
@@ -79,6 +81,18 @@ void add_layer(Scene& scene, const std::string& name, const std::string& techniq
     scene.layers.push_back(std::move(layer));
 }
 
+void set_triangles(Scene& scene, size_t layer, const Array<double>& coordinates,
+                   const Array<int64_t>& first_of) {
+    if (layer >= scene.layers.size())
+        throw Error(ErrorKind::input, "triangles: there is no such layer");
+    const auto triangles = static_cast<int64_t>(coordinates.size()) / 6;
+    const Span<const int64_t> offsets = span_of(first_of);
+    if (offsets.size() != scene.layers[layer].features.feature_count() + 1 || offsets.front() != 0 ||
+        offsets.back() != triangles || !std::is_sorted(offsets.begin(), offsets.end()))
+        throw Error(ErrorKind::input, "triangles: their offsets must rise from 0 to their number");
+    scene.layers[layer].triangles = {vector_of(coordinates), vector_of(first_of)};
+}
+
 LayerEdit make_edit(uint32_t layer, bool polygons, const Array<uint32_t>& removed,
                     const Array<uint32_t>& replaced, const Array<double>& coordinates,
                     const Array<int64_t>& part_offsets, const Array<int64_t>& feature_offsets,
@@ -91,6 +105,16 @@ LayerEdit make_edit(uint32_t layer, bool polygons, const Array<uint32_t>& remove
         Features::own(polygons ? FeatureKind::polygons : FeatureKind::lines, vector_of(coordinates),
                       vector_of(part_offsets), vector_of(feature_offsets), vector_of(rows));
     return edit;
+}
+
+std::shared_ptr<DynamicOptions> make_dynamic_options(const std::string& method, const std::string& width_rule,
+                                                     double cell) {
+    auto options = std::make_shared<DynamicOptions>();
+    if (method != "auto")
+        options->method = method == "lists" ? LineMethod::lists : LineMethod::bins;
+    options->width_rule = width_rule == "thesis" ? LineWidthRule::thesis : LineWidthRule::screen;
+    options->cell = cell;
+    return options;
 }
 
 }  // namespace
@@ -116,6 +140,17 @@ void register_scene(py::module_& module) {
         .def_readwrite("casing", &LayerEdit::casing);
 
     py::class_<TechniqueOptions, std::shared_ptr<TechniqueOptions>>(module, "TechniqueOptions");
+    py::class_<volume::VolumeOptions, TechniqueOptions, std::shared_ptr<volume::VolumeOptions>>(
+        module, "VolumeOptions")
+        .def(py::init([](bool exact, double arc_step) {
+                 volume::VolumeOptions options;
+                 options.grouping = exact ? volume::Grouping::exact : volume::Grouping::colors;
+                 options.arc_step = arc_step;
+                 return options;
+             }),
+             py::arg("exact"), py::arg("arc_step"));
+    py::class_<DynamicOptions, TechniqueOptions, std::shared_ptr<DynamicOptions>>(module, "DynamicOptions")
+        .def(py::init(&make_dynamic_options), py::arg("method"), py::arg("width_rule"), py::arg("cell"));
 
     py::class_<Scene>(module, "Scene")
         .def(py::init([](const Array<float>& heights, double x0, double y0, double dx, double dy,
@@ -131,7 +166,8 @@ void register_scene(py::module_& module) {
         .def("add_layer", &add_layer, py::arg("name"), py::arg("technique"), py::arg("technique_options"),
              py::arg("polygons"), py::arg("coordinates"), py::arg("part_offsets"), py::arg("feature_offsets"),
              py::arg("rows"), py::arg("fill"), py::arg("stroke"), py::arg("casing"), py::arg("outline_mode"),
-             py::arg("outline_order"), py::arg("draw_order"));
+             py::arg("outline_order"), py::arg("draw_order"))
+        .def("set_triangles", &set_triangles, py::arg("layer"), py::arg("coordinates"), py::arg("first_of"));
 }
 
 }  // namespace decalgl::bindings

@@ -54,7 +54,22 @@ void register_stroke(py::module_& module) {
     py::class_<Stroke> stroke(module, "Stroke");
     stroke.def(py::init<>())
         .def_readwrite("styles", &Stroke::styles)
-        .def_readwrite("widest", &Stroke::widest);
+        .def_readwrite("widest", &Stroke::widest)
+        .def_property(
+            "in_pixels", [](const Stroke& self) { return self.units == WidthUnits::pixels; },
+            [](Stroke& self, bool in_pixels) {
+                self.units = in_pixels ? WidthUnits::pixels : WidthUnits::metres;
+            })
+        .def_property(
+            "limits",
+            [](const Stroke& self) {
+                const WidthLimits& limits = self.limits;
+                return std::array<double, 4>{limits.least_px, limits.most_px, limits.least_metres,
+                                             limits.most_metres};
+            },
+            [](Stroke& self, const std::array<double, 4>& limits) {
+                self.limits = {limits[0], limits[1], limits[2], limits[3]};
+            });
     def_array(stroke, "colors", &Stroke::colors);
     def_array(stroke, "widths", &Stroke::widths);
     def_array(stroke, "style_of", &Stroke::style_of);

@@ -14,6 +14,7 @@ from .camera import Camera
 from .coloring import Coloring
 from .distance_field import DistanceField
 from .doctor import Diagnosis, doctor
+from .dynamic import Dynamic
 from .errors import (
     CancelledError,
     ColumnError,
@@ -32,6 +33,7 @@ from .frame import Frame, Picked, PreparedLayer, Stats
 from .indexes import BvhIndex
 from .layer import Layer
 from .lens import Lens
+from .loops import Detail, Loops, LoopsBvh
 from .networks import Lod, NetworkCategory, NetworkStyle
 from .patterns import Pattern
 from .renderer import Renderer
@@ -42,6 +44,7 @@ from .strokes import Hatch
 from .styles import Casing, Outline
 from .techniques import Static, Technique
 from .terrain import Terrain
+from .volume import Volume
 
 __all__ = [
     "BvhIndex",
@@ -53,8 +56,10 @@ __all__ = [
     "CrsError",
     "DecalError",
     "DecalWarning",
+    "Detail",
     "Diagnosis",
     "DistanceField",
+    "Dynamic",
     "FeatureTable",
     "FileError",
     "Frame",
@@ -64,6 +69,8 @@ __all__ = [
     "Layer",
     "Lens",
     "Lod",
+    "Loops",
+    "LoopsBvh",
     "MemoryLimitError",
     "NetworkCategory",
     "NetworkStyle",
@@ -80,6 +87,7 @@ __all__ = [
     "Technique",
     "Terrain",
     "UnsupportedError",
+    "Volume",
     "__version__",
     "doctor",
     "load_scene",

@@ -41,6 +41,11 @@ class LayerChanges:
     def __bool__(self) -> bool:
         return self._any
 
+    @property
+    def states(self) -> Mapping[int, LayerState]:
+        """Those of the layers that were changed, by their places; later changes make another mapping."""
+        return self._states
+
     def begin(self, layers: tuple[AnyLayer, ...], crs: pyproj.CRS | None = None) -> None:
         """Forgets everything: these layers were just prepared; crs is the scene's."""
         self._crs = crs
@@ -61,6 +66,11 @@ class LayerChanges:
         self._any = True
         if self.lens is not None and any(look.layer == index for look in looks):
             self._core.set_lens(_core_lens(self.lens), looks)
+
+    def tune(self, layer: AnyLayer | str | int, options: _core.TechniqueOptions) -> None:
+        """What a technique lets its users choose without preparing anew."""
+        self._core.tune(self._index_of(layer), options)
+        self._any = True
 
     def edit(
         self,

@@ -58,6 +58,8 @@ class Stroke:
     styles: Sequence[StrokeStyle]
     style_of: NDArray[np.uint32]
     widest: float
+    in_pixels: bool
+    limits: tuple[float, float, float, float]
     def __init__(self) -> None: ...
 
 class Hatch:
@@ -110,6 +112,61 @@ class Lens:
     ) -> None: ...
 
 class TechniqueOptions: ...
+
+class DetailEye:
+    def __init__(self) -> None: ...
+    eye: Sequence[float]
+    forward: Sequence[float]
+    pixels: float
+    metres_per_pixel: float
+
+class LoopsDetail:
+    def __init__(self) -> None: ...
+    uniform: float
+    screen: float
+    lens: float
+    lens_centre: tuple[float, float]
+    lens_radius: float
+    heat_top: float
+    def set_steps(self, steps: Sequence[tuple[float, float]]) -> None: ...
+    def set_eye(self, eye: DetailEye) -> None: ...
+    def set_shows(self, name: str) -> None: ...
+
+class LoopsBvh:
+    def __init__(self) -> None: ...
+    primary_branching: Sequence[int]
+    node_capacity: int
+    largest_share: float
+    summary: int
+    secondary_depths: Sequence[int]
+    secondary_branching: Sequence[int]
+    coverage_depth: int
+    minimum_coverage: float
+
+class LoopsChoice(TechniqueOptions):
+    def __init__(
+        self,
+        order: str | Callable[[NDArray[np.float64]], tuple[Any, Any]],
+        segments: bool,
+        bvh: LoopsBvh,
+        detail: LoopsDetail,
+    ) -> None: ...
+
+def loops_simplified(
+    polygons: bool,
+    coordinates: NDArray[np.float64],
+    part_offsets: NDArray[np.int64],
+    feature_offsets: NDArray[np.int64],
+    bounds: Sequence[float],
+    tolerances: Sequence[float],
+    choice: LoopsChoice,
+) -> list[tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]]: ...
+
+class VolumeOptions(TechniqueOptions):
+    def __init__(self, exact: bool, arc_step: float) -> None: ...
+
+class DynamicOptions(TechniqueOptions):
+    def __init__(self, method: str, width_rule: str, cell: float) -> None: ...
 
 class NetworkStyle:
     lod: float
@@ -203,6 +260,9 @@ class Scene:
         outline_order: OutlineOrder,
         draw_order: NDArray[np.int64],
     ) -> None: ...
+    def set_triangles(
+        self, layer: int, coordinates: NDArray[np.float64], first_of: NDArray[np.int64]
+    ) -> None: ...
 
 class Camera:
     def __init__(
@@ -254,6 +314,7 @@ class Renderer:
     def look(self, layer: int) -> LayerLook: ...
     def restyle(self, looks: Sequence[LayerLook]) -> None: ...
     def edit(self, edit: LayerEdit) -> None: ...
+    def tune(self, layer: int, options: TechniqueOptions) -> None: ...
     def set_lens(self, lens: Lens, looks: Sequence[LayerLook]) -> None: ...
     def move_lens(self, lens: Lens) -> None: ...
     def remove_lens(self) -> None: ...

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _core
 from ._colors import colormap, parse_color
+from ._triangles import triangles_of
 
 if TYPE_CHECKING:
     from .scene import Layer, Scene
@@ -28,6 +29,8 @@ def core_scene(scene: Scene) -> _core.Scene:
     )
     for layer in scene.layers:
         _add_layer(layer, result)
+        if layer.technique.needs_triangles and layer.kind == "polygons" and layer.fill is not None:
+            result.set_triangles(layer.index, *triangles_of(layer.features))
     return result
 
 
@@ -70,6 +73,9 @@ def _core_stroke(given: Stroke | None) -> _core.Stroke:
     stroke.widths = given.widths
     stroke.styles = [_core_style(style) for style in given.styles]
     stroke.widest = given.widest
+    stroke.in_pixels = given.units == "px"
+    limits = given.limits
+    stroke.limits = (limits.least_px, limits.most_px, limits.least_metres, limits.most_metres)
     if given.style_of is not None:
         stroke.style_of = given.style_of
     return stroke

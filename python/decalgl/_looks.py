@@ -15,7 +15,7 @@ import numpy as np
 from . import _core
 from ._colors import alpha_values, parse_color
 from ._filters import Columns, rows_meant
-from .coloring import resolve_colors
+from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, close_matches
 from .scene import Layer, draw_order_by
 from .techniques import Technique
@@ -30,15 +30,25 @@ if TYPE_CHECKING:
 COLOR_KEYWORDS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
 DECAL_KEYWORDS = (*COLOR_KEYWORDS, "width")
 KEYWORDS = (*DECAL_KEYWORDS, "order", "visible", "opacity", "by", "where", "outline", "casing", "technique")
+# Of layers and their outlines and casings; lists of what lies where are made for them.
+PREPARED = (
+    "corner", "miter_limit", "cap", "dash", "bands", "hatch", "slope_correction", "widest", "width_units",
+    "mode",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class DecalState:
-    """Fills, strokes or casings of a layer. colors: uint8 (features, 4). widths: float64 (features) or None."""
+    """Fills, strokes or casings of a layer.
+
+    colors: uint8 (features, 4). widths: float64 (features) or None.
+    coloring: what a legend says of them; None for casings, and for what was opened from a file.
+    """
 
     colors: NDArray[np.uint8]
     widths: NDArray[np.float64] | None = None
     widest: float = 0.0
+    coloring: Coloring | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +87,12 @@ class LayerState:
                 raise
             raise StyleError(f"Layer {self.layer.name!r}: {error}") from error
 
+    def explained(self) -> Layer | PreparedLayer:
+        """The layer as its legend has to explain it: in the colours and widths in force."""
+        if not isinstance(self.layer, Layer):
+            return self.layer
+        return _explained(self, self.layer)
+
     def core_look(self, before: LayerState | None = None) -> _core.LayerLook:
         """As the core takes it; widths and order only where they differ from those of `before`."""
         look = _core.LayerLook()
@@ -93,6 +109,11 @@ class LayerState:
         if self.technique is not None and (before is None or before.technique is not self.technique):
             look.technique_options = self.technique.core_options()
         return look
+
+    def seen_shares(self) -> NDArray[np.float64]:
+        """How much of each feature's colour is seen: opacity, and 0 for what is hidden."""
+        shares = np.ones(len(self.rows)) if self.opacity is None else self.opacity
+        return shares if self.shown is None else shares * self.shown
 
     def _seen_colors(self, decal: DecalState) -> NDArray[np.uint8]:
         if self.shown is None and self.opacity is None:
@@ -117,9 +138,35 @@ def first_state(layer: Layer | PreparedLayer, look: _core.LayerLook) -> LayerSta
         if core.colors.size:
             own = None if scene_layer is None else getattr(scene_layer, role)
             widths = core.widths if core.widths.size else getattr(own, "widths", None)
-            decals[role] = DecalState(core.colors.reshape(-1, 4), widths, getattr(own, "widest", 0.0))
+            coloring = _coloring_of(scene_layer, role)
+            decals[role] = DecalState(
+                core.colors.reshape(-1, 4), widths, getattr(own, "widest", 0.0), coloring
+            )
     title = "" if scene_layer is None else scene_layer.coloring.title
     return LayerState(layer, rows, count, attributes, title, decals)
+
+
+def _coloring_of(layer: Layer | None, role: str) -> Coloring | None:
+    if layer is None or role == "casing":
+        return None
+    is_outline = layer.kind == "polygons" and role == "stroke"
+    return layer.outline_coloring if is_outline else layer.coloring
+
+
+def _explained(state: LayerState, layer: Layer) -> Layer:
+    # Features that edits added have no place in the layer's table.
+    count = len(layer.features)
+    seen = state.seen_shares()[:count]
+    main = "fill" if layer.kind == "polygons" else "stroke"
+    parts: dict[str, Any] = {}
+    for role, decal in state.decals.items():
+        own = getattr(layer, role)
+        widths = {} if decal.widths is None else {"widths": decal.widths[:count]}
+        parts[role] = replace(own, colors=decal.colors[:count], **widths)
+        if decal.coloring is not None:
+            name = "coloring" if role == main else "outline_coloring"
+            parts[name] = decal.coloring.seen(seen)
+    return replace(layer, **parts)
 
 
 def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
@@ -166,6 +213,11 @@ def _technique(state: LayerState, technique: Any) -> Technique:
 def require_known(given: Mapping[str, Any], known: tuple[str, ...], name: str) -> None:
     """Raises StyleError, with close matches, for a keyword that is not known."""
     for key in given:
+        if key in PREPARED:
+            raise StyleError(
+                f"Layer {name!r}: {key}= is what the layer was prepared with. Change it where the layer is added, and"
+                " call preprocess(scene)."
+            )
         if key not in known:
             raise StyleError(
                 f"Layer {name!r}: there is no keyword {key!r} here.{close_matches(key, known)} Known are"
@@ -194,11 +246,13 @@ def _decal_keywords(state: LayerState, main: str, given: Mapping[str, Any]) -> d
 def _restyled_decal(
     state: LayerState, decal: DecalState, wanted: Mapping[str, Any], where: NDArray[np.bool_] | None
 ) -> DecalState:
-    colors = _colors(state, decal, wanted)
+    colors, coloring = _colors(state, decal, wanted)
     if where is not None:
-        colors = np.where(where[:, None], colors, decal.colors)
+        # Rows that are marked are no part of what the legend explains.
+        colors, coloring = np.where(where[:, None], colors, decal.colors), decal.coloring
+    decal = replace(decal, colors=colors, coloring=coloring)
     if "width" not in wanted:
-        return replace(decal, colors=colors)
+        return decal
     if decal.widths is None:
         raise StyleError("fills have no width. Leave width= out, or give it to outline=.")
     widths = _widths(state, wanted["width"])
@@ -214,26 +268,41 @@ def _restyled_decal(
             f"a width of {widths.max():g} m is more than the {decal.widest:g} m that it was prepared for. Make"
             " the layer with a larger widest=."
         )
-    return replace(decal, colors=colors, widths=widths)
+    return replace(decal, widths=widths)
 
 
-def _colors(state: LayerState, decal: DecalState, wanted: Mapping[str, Any]) -> NDArray[np.uint8]:
+def _colors(
+    state: LayerState, decal: DecalState, wanted: Mapping[str, Any]
+) -> tuple[NDArray[np.uint8], Coloring | None]:
+    """Colours, and what a legend says of them."""
     coloring = {key: wanted[key] for key in COLOR_KEYWORDS if key in wanted}
     if not coloring:
-        return decal.colors
+        return decal.colors, decal.coloring
     if coloring.keys() == {"alpha"}:
         opacity = alpha_values(coloring["alpha"], state.row_count)
         assert opacity is not None
         colors: NDArray[np.uint8] = decal.colors.copy()
         alpha = np.broadcast_to(opacity, state.row_count)[state.rows]
         colors[:, 3] = np.where(colors[:, 3] > 0, np.rint(255.0 * alpha), 0).astype(np.uint8)
-        return colors
+        if opacity.ndim or decal.coloring is None:
+            return colors, decal.coloring
+        return colors, decal.coloring.with_alpha(float(opacity))
     if "color" not in coloring and "column" not in coloring:
         coloring["column"] = _column_of(state, None, "color")
     if coloring.keys() == {"color"} and (one := parse_color(coloring["color"], strict=False)) is not None:
         channels = np.rint(np.array(one) * 255.0).astype(np.uint8)
-        return np.tile(channels, (len(state.rows), 1))
-    return resolve_colors(state.row_count, state.attributes, rows=state.rows, **coloring).colors
+        colors = np.tile(channels, (len(state.rows), 1))
+        return colors, _following(decal.coloring, Coloring(colors, "single", label_colors=channels[None]))
+    resolved = resolve_colors(state.row_count, state.attributes, rows=state.rows, **coloring)
+    return resolved.colors, _following(decal.coloring, resolved)
+
+
+def _following(before: Coloring | None, after: Coloring) -> Coloring | None:
+    """`after` with the legend that was asked for; how it was to look goes for the same column alone."""
+    if before is None:
+        return None
+    same = before.kind == after.kind and before.title == after.title
+    return replace(after, legend=before.legend, legend_kwds=before.legend_kwds if same else {})
 
 
 def _column_of(state: LayerState, by: Any, keyword: str) -> Any:

@@ -14,7 +14,7 @@ from ._colors import colormap
 from ._values import is_number
 from .patterns import Pattern
 from .strokes import Hatch
-from .styles import Casing, Outline
+from .styles import WIDTH_LIMITS, Casing, Outline
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -115,6 +115,7 @@ def _stroke(table: StrictTable) -> dict[str, Any]:
         bands=_bands(table),
         slope_correction=table.text("slope_correction"),
         widest=table.number("widest"),
+        **{name: table.number(name) for name in WIDTH_LIMITS},
     )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -64,6 +64,39 @@ class Coloring:
     alpha: float | None = None
     missing: int = 0
     left_out: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_), repr=False)
+
+    def with_alpha(self, alpha: float) -> Coloring:
+        """The same with another opacity of all that is drawn."""
+        label_colors = self.label_colors.copy()
+        label_colors[label_colors[:, 3] > 0, 3] = round(255.0 * alpha)
+        return replace(self, label_colors=label_colors, alpha=alpha)
+
+    def seen(self, shares: NDArray[np.float64]) -> Coloring:
+        """The same where of each row that share of its colour is seen: without what is not seen at all."""
+        if shares.size == 0 or (shares == 1.0).all():
+            return self
+        most = float(shares.max())
+        if most == 0.0:
+            return replace(self, legend=False)
+        label_colors = self.label_colors.astype(np.float64)
+        if self.kind != "categorical":
+            label_colors[:, 3] *= most
+            alpha = (1.0 if self.alpha is None else self.alpha) * most
+            return replace(self, label_colors=np.rint(label_colors).astype(np.uint8), alpha=alpha)
+        # One more for rows without a label, whose place is -1.
+        by_label = np.zeros(len(self.labels) + 1)
+        np.maximum.at(by_label, self.label_of[: len(shares)], shares)
+        used = np.bincount(self.label_of[: len(shares)] + 1, minlength=len(by_label))[1:] > 0
+        by_label = by_label[:-1]
+        label_colors[used, 3] *= by_label[used]
+        kept = ~used | (by_label > 0.0)
+        places = np.append(np.where(kept, np.cumsum(kept) - 1, -1), -1)
+        return replace(
+            self,
+            labels=tuple(label for label, is_kept in zip(self.labels, kept, strict=True) if is_kept),
+            label_colors=np.rint(label_colors[kept]).astype(np.uint8),
+            label_of=places[self.label_of],
+        )
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,13 @@ from ._raster import check_memory
 from .errors import FileError, InputError, StyleError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
     from . import _core
+    from ._looks import LayerState
     from .features import Kind
     from .layer import Layer
 
@@ -94,9 +97,15 @@ class Frame:
     thread. Reading raises MemoryLimitError where an array does not fit.
     """
 
-    def __init__(self, core: _core.Frame, layers: tuple[Layer | PreparedLayer, ...]) -> None:
+    def __init__(
+        self,
+        core: _core.Frame,
+        layers: tuple[Layer | PreparedLayer, ...],
+        states: Mapping[int, LayerState],
+    ) -> None:
         self._core = core
         self._layers = layers
+        self._states = states  # of layers that were changed, for legends
         self._read: set[str] = set()
 
     @property
@@ -174,7 +183,8 @@ class Frame:
     def save(self, path: str | Path, *, legend: bool | None = None) -> None:
         """Writes the image in the format of the file's ending, such as .png, .jpg or .tif.
 
-        legend: None lays the legends of the layers that were added with legend=True over it; True does so and
+        legend: None lays the legends of the layers that were added with legend=True over it, as they were restyled
+            since; True does so and
             raises StyleError where there is none; False leaves them out. `image` never has them.
 
         PNG, WebP and TIFF keep alpha; in other formats what is transparent becomes white. Raises FileError.
@@ -207,7 +217,12 @@ class Frame:
     def _explained_layers(self) -> list[Layer]:
         from .layer import Layer
 
-        return [layer for layer in self._layers if isinstance(layer, Layer) and layer.coloring.legend]
+        asking = [
+            self._states[place].explained() if place in self._states else layer
+            for place, layer in enumerate(self._layers)
+            if isinstance(layer, Layer) and layer.coloring.legend
+        ]
+        return [layer for layer in asking if isinstance(layer, Layer) and layer.coloring.legend]
 
     def _check_memory(self, what: str) -> None:
         if what in self._read or self._core.image.nbytes < 4 * LARGE_PICTURE:

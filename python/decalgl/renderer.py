@@ -24,14 +24,17 @@ from .camera import checked_size
 from .errors import CancelledError, InputError, warn
 from .frame import Frame, PreparedLayer
 from .indexes import BvhIndex, resolve_index
+from .loops import Loops
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
 
+    from ._looks import LayerState
     from .camera import Camera
     from .lens import Lens
+    from .loops import Detail
     from .scene import Layer, Scene
 
     AnyLayer: TypeAlias = Layer | PreparedLayer
@@ -46,7 +49,7 @@ BACKENDS = ("auto", "egl", "osmesa")
 SKY: tuple[Rgba, Rgba] = ((0.87, 0.91, 0.94, 1.0), (0.53, 0.70, 0.86, 1.0))
 MOST_THREADS = 1024
 LARGEST_SIDE = 1 << 20
-COVERAGE_SAMPLES = 32
+COVERAGE_SAMPLES = 64
 LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 IMAGE_BYTES, SURFACE_BYTES, TARGET_SIDE = 4, 64, 4096
 MULTISAMPLED_BYTES, MULTISAMPLED_SIDE = 40, 2048  # a sample
@@ -123,6 +126,7 @@ class Renderer:
         self._cache: bytes = b""
         self._prepared_layers: tuple[AnyLayer, ...] = ()
         self._updated_layers: tuple[AnyLayer, ...] = ()
+        self._updated_states: Mapping[int, LayerState] = {}
 
     def has_options(self, given: Mapping[str, Any]) -> bool:
         """Whether this renderer is what `given`, arguments other than size and antialias, asks for."""
@@ -242,6 +246,13 @@ class Renderer:
         """
         return self._changes.edit(layer, add, remove, move, replace, style)
 
+    def set_detail(self, layer: AnyLayer | str | int, detail: Detail) -> None:
+        """Another level of detail for a layer of technique "loops", and the neighbours that it was prepared with.
+
+        The next `render` shows it; nothing is prepared anew. Raises UnsupportedError for other techniques, InputError.
+        """
+        self._changes.tune(layer, Loops(detail=detail).core_options())
+
     @property
     def lens(self) -> Lens | None:
         """A part of the picture in which layers look otherwise, or None. A lens that is `moved` costs nothing.
@@ -299,7 +310,9 @@ class Renderer:
         background: "sky", a colour, or None for transparent (alpha 0) where there is no terrain.
         """
         low, high = drawn_background(background)
-        return Frame(self._core.render(low, high), self._updated_layers)
+        if self._updated_layers is self._prepared_layers:
+            self._updated_states = self._changes.states
+        return Frame(self._core.render(low, high), self._updated_layers, self._updated_states)
 
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""

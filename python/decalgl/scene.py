@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from ._sources import Attributes
     from .frame import Frame
     from .renderer import Renderer
-    from .styles import Casing, Outline, WidthUnits
+    from .strokes import WidthUnits
+    from .styles import Casing, Outline
 
 
 @dataclass(frozen=True)
@@ -174,8 +175,9 @@ class Scene:
         outline: an `Outline`.
         order: "feature" (later on top), "size" (larger on top), or a column or numbers (higher on top,
             missing ones at the bottom). Columns named "feature" or "size" must be given as numbers.
-        technique: who draws the layer: "auto", "static" or a `Technique` (`decalgl.techniques`). Neighbouring layers of
-            one technique are one pass; between passes only colour and coverage are known.
+        technique: who draws the layer: "auto", "static", "dynamic" or a `Technique` (`decalgl.techniques`).
+            Neighbouring layers of one technique are one pass; between passes only colour and coverage are known.
+            Outlines with widths on the screen are a pass over that of the fills.
 
         Raises CrsError, FileError, ColumnError, StyleError and InputError, which leave the scene as it was.
         """
@@ -213,14 +215,18 @@ class Scene:
         bands: Any = None,
         slope_correction: Literal["thoeny", "tangent"] | None = None,
         widest: float | None = None,
+        width_min_px: float | None = None,
+        width_max_px: float | None = None,
+        width_min_m: float | None = None,
+        width_max_m: float | None = None,
         order: Any = "feature",
         technique: str | Technique = "auto",
     ) -> Layer:
         """Adds a layer of lines on top of the others.
 
         width: one number, one for each row, a column's name, or a dict {category: width} by the categories of
-            `column`. width_units: "m", metres on the map plane. "px", pixels on the screen, is not drawn by this
-            version.
+            `column`. width_units: "m", metres on the map plane; "px", pixels on the screen at every zoom.
+        width_min_px ... width_max_m: what widths are kept between, in pixels, or in metres as they are seen head-on.
         corner: "round", "miter" or "bevel". cap: "round", "butt" or "square". Each is one for all, one for each
             row, a column's name, or a dict by category.
         miter_limit: degrees between two segments; sharper corners than that are round.
@@ -242,7 +248,19 @@ class Scene:
             column, cmap, color, vmin, vmax, norm, alpha, categorical, legend, legend_kwds, missing_kwds
         )
         stroke = StrokeKeywords(
-            width, width_units, corner, cap, miter_limit, dash, bands, slope_correction, widest
+            width,
+            width_units,
+            corner,
+            cap,
+            miter_limit,
+            dash,
+            bands,
+            slope_correction,
+            widest,
+            width_min_px,
+            width_max_px,
+            width_min_m,
+            width_max_m,
         )
         looks = LineKeywords(colors, stroke, casing)
         return self._add("lines", data, name, layer, crs, looks, order, technique)
@@ -294,7 +312,7 @@ class Scene:
     ) -> Layer:
         name = f"{kind} {len(self._layers)}" if name is None else str(name)
         looks.check(name)
-        chosen = resolve_technique(technique, name)
+        chosen = resolve_technique(technique, name, looks.follows_view)
         table, attributes = read_features(
             data, kind, terrain_crs=self.terrain.crs, layer_name=name, crs=crs, layer=file_layer
         )

@@ -21,6 +21,7 @@ CapStyle = Literal["round", "butt", "square"]
 SlopeCorrection = Literal["none", "thoeny", "tangent"]
 OutlineMode = Literal["normal", "inset", "offset"]
 OutlineOrder = Literal["layer", "feature"]
+WidthUnits = Literal["m", "px"]
 MITER_LIMIT = 40.0
 
 
@@ -67,14 +68,25 @@ class StrokeStyle:
     bands: tuple[ColorBand, ...] = ()
 
 
+@dataclass(frozen=True)
+class WidthLimits:
+    """What a width is kept between at every depth: pixels, and metres as they are seen head-on."""
+
+    least_px: float = 0.0
+    most_px: float = float("inf")
+    least_metres: float = 0.0
+    most_metres: float = float("inf")
+
+
 @dataclass(frozen=True, eq=False)
 class Stroke:
     """The strokes of a layer's features.
 
     colors: uint8 (features, 4), sRGB with straight alpha; alpha 0 is not drawn.
-    widths: float64 (features), metres on the map plane; 0 is not drawn.
+    widths: float64 (features), metres on the map plane, or pixels on the screen as `units` says; 0 is not drawn.
+    limits: of the widths, whatever their units.
     styles, style_of: uint32 (features), each feature's place among the styles.
-    widest: metres that strokes may be widened to later without preprocessing; 0 for as wide as they are.
+    widest: what strokes may be widened to later without preprocessing; 0 for as wide as they are.
     """
 
     colors: NDArray[np.uint8] = field(repr=False)
@@ -82,6 +94,13 @@ class Stroke:
     styles: tuple[StrokeStyle, ...] = (StrokeStyle(),)
     style_of: NDArray[np.uint32] | None = field(default=None, repr=False)
     widest: float = 0.0
+    units: WidthUnits = "m"
+    limits: WidthLimits = WidthLimits()
+
+    @property
+    def follows_view(self) -> bool:
+        """Whether widths on the ground change with the view."""
+        return self.units == "px" or self.limits != WidthLimits()
 
     def __post_init__(self) -> None:
         _lock(self.colors, self.widths, self.style_of)

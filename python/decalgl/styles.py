@@ -10,12 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Literal
 
-from .strokes import MITER_LIMIT
+from .strokes import MITER_LIMIT, WidthUnits
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-WidthUnits = Literal["m", "px"]
+WIDTH_LIMITS = ("width_min_px", "width_max_px", "width_min_m", "width_max_m")
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,15 @@ class StrokeKeywords:
     bands: Any = None
     slope_correction: Literal["thoeny", "tangent"] | None = None
     widest: float | None = None
+    width_min_px: float | None = None
+    width_max_px: float | None = None
+    width_min_m: float | None = None
+    width_max_m: float | None = None
+
+    @property
+    def follows_view(self) -> bool:
+        """Whether widths on the ground change with the view: those in pixels, and limited ones."""
+        return self.width_units == "px" or any(getattr(self, name) is not None for name in WIDTH_LIMITS)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -79,7 +88,8 @@ class Casing:
 class Outline:
     """Strokes along the borders of polygons, holes included.
 
-    width, width_units, corner, miter_limit, dash, bands, slope_correction, widest: as in `Scene.add_lines`.
+    width, width_units, width_min_px ... width_max_m, corner, miter_limit, dash, bands, slope_correction, widest: as in
+        `Scene.add_lines`.
     color ... missing_kwds: as in `Scene.add_polygons`; black by default.
     mode: "normal", half of the width on each side of the border; "inset" or "offset", the whole width inside or
         outside the polygon.
@@ -106,6 +116,10 @@ class Outline:
     bands: Any = None
     slope_correction: Literal["thoeny", "tangent"] | None = None
     widest: float | None = None
+    width_min_px: float | None = None
+    width_max_px: float | None = None
+    width_min_m: float | None = None
+    width_max_m: float | None = None
 
 
 def color_keywords(look: Casing | Outline) -> ColorKeywords:

@@ -19,8 +19,16 @@ from ._values import finite_number, is_listed, is_word
 from .coloring import Coloring, resolve_colors
 from .errors import StyleError, UnsupportedError, close_matches
 from .patterns import NAMED_DASHES, Pattern, is_dash_lengths, parse_dash
-from .strokes import ColorBand, Fill, Hatch, Stroke, StrokeStyle
-from .styles import Casing, ColorKeywords, Outline, StrokeKeywords, color_keywords, stroke_keywords
+from .strokes import ColorBand, Fill, Hatch, Stroke, StrokeStyle, WidthLimits
+from .styles import (
+    WIDTH_LIMITS,
+    Casing,
+    ColorKeywords,
+    Outline,
+    StrokeKeywords,
+    color_keywords,
+    stroke_keywords,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -59,12 +67,25 @@ class LineKeywords:
     stroke: StrokeKeywords
     casing: Casing | None = None
 
+    @property
+    def follows_view(self) -> bool:
+        """Whether widths on the ground change with the view."""
+        return self.stroke.follows_view
+
     def check(self, layer_name: str) -> None:
         """Raises StyleError and UnsupportedError for all that can be told without the data."""
         with _named(f"Layer {layer_name!r}"):
             _shared_style(self.stroke, "")
+            _require_screen_style(self.stroke, "")
             if self.casing is not None and not isinstance(self.casing, Casing):
                 raise _wrong_type("casing", self.casing, "Casing(width=2)")
+            if self.casing is not None and _limits(self.stroke, "") != WidthLimits():
+                raise UnsupportedError(
+                    "casing= is not drawn for limited widths (width_min_px and its siblings). Leave the limits out, or"
+                    " add the casing as a layer of wider lines."
+                )
+            if self.casing is not None and self.casing.dash is not None:
+                _require_screen_style(replace(self.stroke, dash=self.casing.dash), "casing ")
 
     def resolve(self, rows: LayerRows) -> Looks:
         """Raises StyleError, ColumnError and InputError that name the layer, the keyword and the row."""
@@ -99,6 +120,11 @@ class PolygonKeywords:
     hatch: Any = None
     outline: Outline | None = None
 
+    @property
+    def follows_view(self) -> bool:
+        """Whether widths on the ground change with the view: of outlines without fills."""
+        return self.outline is not None and stroke_keywords(self.outline).follows_view
+
     def check(self, layer_name: str) -> None:
         """Raises StyleError and UnsupportedError for all that can be told without the data."""
         if self.outline is None:
@@ -107,6 +133,7 @@ class PolygonKeywords:
             if not isinstance(self.outline, Outline):
                 raise _wrong_type("outline", self.outline, "Outline(width=2, width_units='m')")
             _shared_style(stroke_keywords(self.outline), "outline ")
+            _require_screen_style(stroke_keywords(self.outline), "outline ")
             _require_word("outline mode", self.outline.mode, MODES)
             _require_word("outline order", self.outline.order, ORDERS)
 
@@ -193,12 +220,7 @@ def _widths(width: Any, rows: LayerRows, what: str) -> NDArray[np.float64]:
 
 def _shared_style(keywords: StrokeKeywords, what: str) -> StrokeStyle:
     """What all features of a stroke have in common. Raises StyleError and UnsupportedError."""
-    if is_word(keywords.width_units, ("px",)):
-        raise UnsupportedError(
-            f"{what}widths in pixels (width_units='px', the default) are not drawn by this version. Give the"
-            " width on the ground in metres, such as width=5, width_units='m'."
-        )
-    if not is_word(keywords.width_units, ("m",)):
+    if not is_word(keywords.width_units, ("m", "px")):
         raise StyleError(f"{what}width_units must be 'm' or 'px', but it is {keywords.width_units!r}.")
     limit = finite_number(keywords.miter_limit, f"{what}miter_limit")
     if not 0.0 <= limit <= 180.0:
@@ -206,6 +228,7 @@ def _shared_style(keywords: StrokeKeywords, what: str) -> StrokeStyle:
     correction = keywords.slope_correction
     if correction is not None:
         _require_word(f"{what}slope_correction", correction, SLOPE_CORRECTIONS, "or None")
+    _limits(keywords, what)
     if keywords.widest is not None and finite_number(keywords.widest, f"{what}widest") <= 0.0:
         raise StyleError(f"{what}widest must be a width above 0 in metres, but it is {keywords.widest:g}.")
     return StrokeStyle(
@@ -213,6 +236,35 @@ def _shared_style(keywords: StrokeKeywords, what: str) -> StrokeStyle:
         slope_correction=correction or "none",
         bands=_bands(keywords.bands, what),
     )
+
+
+def _limits(keywords: StrokeKeywords, what: str) -> WidthLimits:
+    """What widths are kept between. Raises StyleError."""
+    given = {}
+    for name, unlimited in zip(WIDTH_LIMITS, (0.0, np.inf, 0.0, np.inf), strict=True):
+        value = getattr(keywords, name)
+        given[name] = unlimited if value is None else finite_number(value, f"{what}{name}")
+        if given[name] < 0.0:
+            raise StyleError(f"{what}{name} must be a width of 0 or more, but it is {given[name]:g}.")
+    for unit in ("px", "m"):
+        least, most = given[f"width_min_{unit}"], given[f"width_max_{unit}"]
+        if least > most:
+            raise StyleError(
+                f"{what}width_min_{unit}={least:g} is above width_max_{unit}={most:g}. Exchange them."
+            )
+    return WidthLimits(*given.values())
+
+
+def _require_screen_style(keywords: StrokeKeywords, what: str) -> None:
+    """Raises UnsupportedError for what strokes do not have whose widths follow the view."""
+    if not keywords.follows_view:
+        return
+    for name in ("dash", "bands", "slope_correction"):
+        if getattr(keywords, name) is not None:
+            raise UnsupportedError(
+                f"{what}{name}= is not drawn for widths on the screen (width_units='px', the default, and"
+                f" width_min_px and its siblings). Leave it out, or give width_units='m' without limits."
+            )
 
 
 def _require_word(keyword: str, value: Any, known: tuple[str, ...], more: str = "") -> None:
@@ -267,7 +319,7 @@ def _stroke(
             f"{what}widest={widest:g} lies below the width {widths.max():g} of row {row}. Give the largest width"
             " that lines may be given later."
         )
-    return Stroke(colors, widths, styles, style_of, widest)
+    return Stroke(colors, widths, styles, style_of, widest, keywords.width_units, _limits(keywords, what))
 
 
 def _styles(

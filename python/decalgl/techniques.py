@@ -1,7 +1,10 @@
 """The ways to drape a layer over the terrain.
 
-"auto"      chosen by the layer
+"auto"      "dynamic" for widths in pixels, else "static"
 "static"    world-size lines and polygons, looked up pixel by pixel: docs/techniques/static.md
+"dynamic"   lines of constant size on the screen: docs/techniques/dynamic.md
+"loops"     world-size, simplified where and as much as the view allows: docs/techniques/loops.md
+"volume"    meshes around the terrain, counted in the stencil: docs/techniques/volume.md
 "distance_field"   networks of lines, restyled as a whole: docs/techniques/distance_field.md
 """
 
@@ -10,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from .errors import StyleError, close_matches
+from .errors import StyleError, UnsupportedError, close_matches
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,10 +25,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Technique:
-    """A technique with what it lets its users choose; each is a class of its own."""
+    """A technique with what it lets its users choose; each is a class of its own.
+
+    name: for `technique=`. needs_triangles: of polygons. follows_view: whether it draws widths on the screen.
+    restyles: whether its choices may change without preparing anew.
+    """
 
     name: ClassVar[str]
-    restyles: ClassVar[bool] = False  # whether its choices may change without preparing anew
+    needs_triangles: ClassVar[bool] = False
+    follows_view: ClassVar[bool] = False
+    restyles: ClassVar[bool] = False
 
     def core_options(self) -> _core.TechniqueOptions | None:
         """The choices as the core takes them; None where there are none."""
@@ -53,19 +62,25 @@ class Static(Technique):
     name = "static"
 
 
-def resolve_technique(technique: str | Technique, layer_name: str) -> Technique:
-    """The technique of a layer. Raises StyleError."""
-    if isinstance(technique, Technique):
-        return technique
-    from .distance_field import DistanceField
+def resolve_technique(technique: str | Technique, layer_name: str, follows_view: bool) -> Technique:
+    """The technique of a layer. follows_view: whether its widths are those on the screen.
 
-    by_name: dict[str, type[Technique]] = {each.name: each for each in (Static, DistanceField)}
-    if technique == "auto":
-        return Static()
+    Raises StyleError, and UnsupportedError for a technique that draws no such widths.
+    """
+    by_name = {each.name: each for each in Technique.__subclasses__()}
+    if isinstance(technique, str) and technique == "auto":
+        technique = "dynamic" if follows_view else "static"
     if isinstance(technique, str) and technique in by_name:
-        return by_name[technique]()
-    names = ("auto", *by_name)
-    raise StyleError(
-        f"Layer {layer_name!r}: there is no technique={technique!r}.{close_matches(str(technique), names)} Use"
-        f" {', '.join(map(repr, names))} or a decalgl.Technique."
-    )
+        technique = by_name[technique]()
+    if not isinstance(technique, Technique):
+        names = ("auto", *by_name)
+        raise StyleError(
+            f"Layer {layer_name!r}: there is no technique={technique!r}.{close_matches(str(technique), names)} Use"
+            f" {', '.join(map(repr, names))} or a decalgl.Technique."
+        )
+    if follows_view and not technique.follows_view and not technique.names_widths:
+        raise UnsupportedError(
+            f"Layer {layer_name!r}: technique {technique.name!r} draws widths on the ground, but these are on the"
+            " screen (width_units='px', the default, or limits). Give width_units='m', or technique='auto'."
+        )
+    return technique

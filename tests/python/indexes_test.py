@@ -145,6 +145,28 @@ def test_pick_lists_what_lies_there() -> None:
             ]
 
 
+@pytest.mark.parametrize("index", ["grid", "bvh"])
+@pytest.mark.parametrize("correction", ["tangent", "thoeny"])
+def test_pick_knows_the_slope_as_the_shaders_do(index: str, correction: str) -> None:
+    random = np.random.default_rng(4)
+    rugged = dg.Terrain(random.uniform(0.0, 12.0, (21, 21)).astype(np.float32), 0.0, 100.0, 5.0, 5.0)
+    ways = [[LineString(random.uniform(0.0, 100.0, (4, 2))) for _ in range(12)] for _ in range(3)]
+    camera = dg.Camera.look_at((50.0, -40.0, 70.0), (50.0, 50.0, 0.0))
+    tops = []
+    for slope_correction in (None, correction):
+        style = {"width": 4.0, "width_units": "m", "slope_correction": slope_correction}
+        scene = dg.Scene(rugged)
+        scene.add_lines(ways[0], corner="miter", dash=(9, 3), **style)
+        scene.add_lines(ways[1], corner="bevel", cap="square", **style)
+        scene.add_lines(ways[2], bands=[(0.5, "red"), (1.0, "blue")], casing=dg.Casing(width=1), **style)
+        frame = draw(scene, camera, index=index)
+        hits = [frame.pick(x, y)[:1] for y in range(SIZE[1]) for x in range(SIZE[0])]
+        tops.append([(one[0].layer.index, one[0].row) if one else (-1, -1) for one in hits])
+        seen = list(zip(frame.layers.ravel().tolist(), frame.ids.ravel().tolist(), strict=True))
+        assert tops[-1] == seen
+    assert sum(one != other for one, other in zip(*tops, strict=True)) > 200
+
+
 # Thöny's composition
 
 

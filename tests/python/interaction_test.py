@@ -152,6 +152,13 @@ def test_widths_are_refused_beyond_what_was_prepared() -> None:
         fixed.restyle("ways", width=1.0)
 
 
+@pytest.mark.parametrize("keyword", ["dash", "bands", "corner", "cap", "hatch"])
+def test_what_lists_are_made_for_is_refused_with_what_to_do(keyword: str) -> None:
+    renderer = prepared(scene_of(PLAIN, {}))
+    with pytest.raises(dg.StyleError, match=rf"'ways': {keyword}= is what .* call preprocess\(scene\)"):
+        renderer.restyle("ways", **{keyword: "round"})
+
+
 def test_a_width_of_zero_hides_and_comes_back() -> None:
     renderer = prepared(scene_of(PLAIN, {"color": "navy"}, widest=4.0))
     before = renderer.render()
@@ -312,13 +319,52 @@ def test_a_lens_follows_what_is_restyled_outside() -> None:
     assert_same(frame, fresh.render())
 
 
+FAR = dg.Camera.top_down((-2000.0, -2000.0, 2100.0, 2100.0))
+
+
+@pytest.mark.parametrize("name", RESTYLES)
+def test_a_far_view_restyled_is_that_of_a_scene_prepared_so(name: str) -> None:
+    """Levels of detail are coloured anew from what their samples see, whatever was drawn from them before."""
+    restyle, style = RESTYLES[name]
+    ways = {"color": "black", "width": 1.0, "bands": [(0.4, "white"), (1.0, "black")]}
+    fresh = prepared(scene_of(style, ways), "coverage")
+    fresh.update(FAR)
+    renderer = prepared(scene_of(PLAIN, ways), "coverage")
+    renderer.update(FAR)
+    before = renderer.render()
+    assert any("LEVELS" in variant for variant in before.stats.variants)
+    renderer.restyle("areas", **restyle)
+    after = renderer.render()
+    np.testing.assert_array_equal(after.image, fresh.render().image)
+    assert (after.image != before.image).any()
+    renderer.edit("areas", remove=[0, 5])
+    edited = renderer.render().image
+    renderer.restyle("areas", visible=np.arange(40) > 20)
+    renderer.restyle("areas", visible=restyle.get("visible", True))
+    np.testing.assert_array_equal(renderer.render().image, edited)
+
+
+def test_levels_of_one_file_are_not_taken_for_those_of_another(tmp_path: Path) -> None:
+    renderer = dg.Renderer(SIZE, "coverage")
+    pictures = []
+    for color in ("tan", "crimson"):
+        path = tmp_path / f"{color}.decal"
+        prepared(scene_of({"color": color}, {"color": color})).save(path)
+        renderer.open(path)
+        renderer.update(FAR)
+        pictures.append(renderer.render().image)
+    expected = prepared(scene_of({"color": "crimson"}, {"color": "crimson"}), "coverage")
+    expected.update(FAR)
+    np.testing.assert_array_equal(pictures[1], expected.render().image)
+    assert (pictures[0] != pictures[1]).any()
+
+
 def test_a_far_view_is_restyled_too() -> None:
     """From levels of detail, and through a lens."""
-    far = dg.Camera.top_down((-2000.0, -2000.0, 2100.0, 2100.0))
     pictures = []
     for color in ("tan", "crimson"):
         renderer = prepared(scene_of({"color": color}, {"color": color}), "coverage")
-        renderer.update(far)
+        renderer.update(FAR)
         renderer.render()
         renderer.restyle("areas", color="crimson")
         renderer.restyle("ways", color="crimson")

@@ -414,6 +414,44 @@ def test_pictures_without_anything_to_explain(tmp_path: Path) -> None:
         scene.layers[0].scalar_mappable()
 
 
+def test_legends_show_the_colours_that_layers_were_restyled_to(tmp_path: Path) -> None:
+    scene = scene_of()
+    data = parks(kind=["wood", "lake", "wood", "marsh"], height=[1.0, 2.0, 3.0, 4.0])
+    colors = {"wood": "#00ff00", "lake": "#0000ff", "marsh": "#ff00ff"}
+    scene.add_polygons(data, name="parks", column="kind", cmap=colors, legend=True)
+    renderer = dg.Renderer(SIZE, "none")
+    renderer.preprocess(scene)
+    renderer.update(MAP)
+
+    def legend_pixels(frame: dg.Frame) -> NDArray[np.uint8]:
+        pixels = saved(frame, tmp_path)
+        return pixels[(pixels != frame.image).any(axis=-1)][None]
+
+    first = renderer.render()
+    renderer.restyle("parks", column="kind", cmap={**colors, "wood": "#ff8000"})
+    recolored = legend_pixels(renderer.render())
+    assert shown(recolored, "#ff8000") > 100
+    assert shown(recolored, "#00ff00") == 0
+    assert shown(legend_pixels(first), "#00ff00") > 100, "frames of before keep theirs"
+    renderer.restyle("parks", color="red", where="kind == 'wood'")
+    assert (legend_pixels(renderer.render()) == recolored).all(), "what is marked is not explained"
+    renderer.restyle("parks", column="kind", cmap=colors, opacity={"lake": 0.0, "marsh": 0.5})
+    faded = legend_pixels(renderer.render())
+    assert shown(faded, "#00ff00") > 100
+    assert shown(faded, "#0000ff") == shown(faded, "#ff00ff") == 0
+    renderer.restyle("parks", visible="kind == 'lake'")
+    assert (saved(frame := renderer.render(), tmp_path) == frame.image).all(), "nothing is left to explain"
+    renderer.restyle("parks", visible=True, opacity=1.0, column="height", cmap=["#000000", "#ff0000"])
+    assert shown(legend_pixels(renderer.render()), "#ff0000") > 0
+    renderer.restyle("parks", color="teal", alpha=1.0)
+    rows = renderer.edit("parks", add=[box(0, 0, 10, 10)], color="yellow")
+    assert shown(legend_pixels(renderer.render()), "teal") > 100
+    renderer.edit("parks", remove=rows)
+    renderer.preprocess(scene)
+    renderer.update(MAP)
+    assert (saved(renderer.render(), tmp_path) == saved(first, tmp_path)).all()
+
+
 def test_opened_scenes_have_no_legends(tmp_path: Path) -> None:
     scene = scene_of()
     scene.add_polygons(parks(kind=["a"]), column="kind", legend=True)

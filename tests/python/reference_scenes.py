@@ -38,6 +38,9 @@ class Stroke:
     widths: FloatArray
     styles: tuple[Style, ...] = (Style(),)
     style_of: NDArray[np.int64] | None = None
+    units: str = "m"
+    limits: Any = None
+    follows_view: bool = False
 
 
 @dataclass

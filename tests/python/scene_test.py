@@ -226,8 +226,8 @@ def test_bad_layers_name_what_is_wrong(data: Any, options: Any, error: type[Exce
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        ({}, dg.UnsupportedError, "'roads'.*pixels.*default.*width_units='m'"),
-        ({"width": 2, "width_units": "px"}, dg.UnsupportedError, "metres"),
+        ({"technique": "static"}, dg.UnsupportedError, "'roads'.*on the screen.*default.*width_units='m'"),
+        ({"width": 2, "dash": "dashed"}, dg.UnsupportedError, "'roads': dash=.*default.*width_units='m'"),
         ({"width": 2, "width_units": "ft"}, dg.StyleError, "'roads'.*'m' or 'px'"),
         ({"width": 0, "width_units": "m"}, dg.StyleError, "'roads', row 0: width 0 is not a positive"),
         ({"width": -3, "width_units": "m"}, dg.StyleError, "'roads', row 0: width -3 "),

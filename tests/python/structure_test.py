@@ -14,7 +14,7 @@ AREAS = {
     "geo": {"core", "terrain"},  # it resamples terrains
     "vector": {"core"},
     "terrain": {"core"},
-    "technique": {"core", "gl", "vector"},
+    "technique": {"core", "gl", "terrain", "vector"},
     "frame": {"core", "gl", "vector", "terrain", "technique"},
     "app": {"core", "geo", "vector", "terrain", "frame"},
 }

@@ -439,9 +439,9 @@ def test_unusable_polygon_styles_are_refused(options: Any, message: str) -> None
     assert_usable(scene)
 
 
-def test_outlines_in_pixels_are_not_drawn() -> None:
-    with pytest.raises(dg.UnsupportedError, match=r"'parks': outline widths in pixels.*width_units='m'"):
-        polygons(outline=dg.Outline(width=2))
+def test_outlines_in_pixels_have_no_dashes() -> None:
+    with pytest.raises(dg.UnsupportedError, match=r"'parks': outline dash=.*width_units='m'"):
+        polygons(outline=dg.Outline(width=2, dash="dashed"))
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from PIL import Image
 
 import decalgl as dg
 from decalgl import reference as ref
-from judge import draw, overlay_of, own_surface, sides, surface_below
+from judge import SNAP, centres_of, draw, overlay_of, own_surface, sides, surface_below
 from shapes import with_features
 
 if TYPE_CHECKING:
@@ -76,18 +76,24 @@ def unexplained(
     return left
 
 
-def unexplained_ids(view: View, frame: IdsSeen, reach: float) -> tuple[int, int]:
-    """How many of a frame's ids are not the reference's at its own positions, and how many no rounding explains."""
+def unexplained_ids(view: View, frame: IdsSeen, reach: float, nearest: bool = False) -> tuple[int, int]:
+    """How many of a frame's ids are not the reference's at its own positions, and how many no rounding explains.
+
+    nearest: see `reference.membership`.
+    """
     surface = own_surface(view, frame)
-    expected = ref.render_ids(view.scene, view.camera, view.size, surface=surface, distances=False)
+    expected = ref.render_ids(
+        view.scene, view.camera, view.size, surface=surface, distances=False, nearest=nearest
+    )
     wrong = np.nonzero((frame.ids != expected.ids) | (frame.layers != expected.layers))
     ids, layers = frame.ids[wrong], frame.layers[wrong]
 
     def is_right(scene: dg.Scene, moved: ref.Surface, which: IntArray) -> BoolArray:
         crop = (0, 0, len(which), 1)
         found = ref.render_ids(
-            scene, view.camera, view.size, crop, surface=moved.reshape(1, -1), distances=False
-        )
+            scene, view.camera, view.size, crop,
+            surface=moved.reshape(1, -1), distances=False, nearest=nearest,
+        )  # fmt: skip
         right: BoolArray = (found.ids[0] == ids[which]) & (found.layers[0] == layers[which])
         return right
 
@@ -95,7 +101,12 @@ def unexplained_ids(view: View, frame: IdsSeen, reach: float) -> tuple[int, int]
 
 
 def unexplained_colors(
-    view: View, frame: dg.Frame, overlay: FloatArray, reach: float, steps: float = 1.01
+    view: View,
+    frame: dg.Frame,
+    overlay: FloatArray,
+    reach: float,
+    steps: float = 1.01,
+    nearest: bool = False,
 ) -> tuple[int, int]:
     """The same of an overlay (h, w, 4) without anti-aliasing, whose channels may be some steps of 1/255 off."""
     surface = own_surface(view, frame)
@@ -104,7 +115,7 @@ def unexplained_colors(
     flat = overlay.reshape(-1, 4)
 
     def is_off(scene: dg.Scene, seen: ref.Surface, colors: FloatArray) -> BoolArray:
-        off: BoolArray = np.abs(composite_of(view, scene, seen) - colors).max(axis=-1) > steps / 255
+        off: BoolArray = np.abs(composite_of(view, scene, seen, nearest) - colors).max(axis=-1) > steps / 255
         return off
 
     wrong = np.flatnonzero(ground)[is_off(view.scene, surface[ground], flat[ground])]
@@ -115,10 +126,51 @@ def unexplained_colors(
     return len(wrong), len(left)
 
 
-def composite_of(view: View, scene: dg.Scene, surface: ref.Surface) -> FloatArray:
+def unexplained_means(
+    view: View, overlay: FloatArray, places: FloatArray, reach: float, steps: float, nearest: bool = False
+) -> tuple[int, int]:
+    """The same of an overlay of which a pixel is the mean of what samples at these places (n, 2) in it see.
+
+    places: to the right and down from the pixel's upper left corner. Pixels that see sky are not looked at.
+
+    The tolerance is that of the samples: each of them is looked at again with vertices, positions and, by `SNAP`, its
+    place moved. A pixel is right where no channel lies outside of the means of the least and of the most that its
+    samples see then.
+    """
+    points = (centres_of(view) - 0.5)[:, None] + places
+    surface = ref.raycast(view.scene, view.camera, view.size, points.reshape(-1, 2))
+    ground = np.flatnonzero(np.isfinite(surface.depth).reshape(len(points), -1).all(axis=1))
+    seen = composite_of(view, view.scene, surface, nearest).reshape(*points.shape[:2], 4)[ground]
+    points, colors = points[ground], overlay.reshape(-1, 4)[ground]
+    low, high = seen.copy(), seen.copy()
+
+    def is_off(some: IntArray) -> BoolArray:
+        least, most = low[some].mean(axis=1) - steps / 255, high[some].mean(axis=1) + steps / 255
+        off: BoolArray = ((colors[some] < least) | (colors[some] > most)).any(axis=-1)
+        return off
+
+    left = np.arange(len(ground))
+    left = left[is_off(left)]
+    wrong = len(left)
+    for seed in range(TRIES):
+        if not len(left):
+            break
+        generator = np.random.default_rng([2, seed])
+        nearer = reach * (1 + seed % 8) / 8
+        there = points[left] + generator.uniform(-SNAP, SNAP, points[left].shape)
+        moved = ref.raycast(view.scene, view.camera, view.size, there.reshape(-1, 2))
+        moved.world[:, :2] += generator.uniform(-nearer, nearer, (len(moved.depth), 2))
+        found = composite_of(view, shaken(view.scene, nearer, seed), moved, nearest)
+        found = found.reshape(len(left), -1, 4)
+        low[left], high[left] = np.minimum(low[left], found), np.maximum(high[left], found)
+        left = left[is_off(left)]
+    return wrong, len(left)
+
+
+def composite_of(view: View, scene: dg.Scene, surface: ref.Surface, nearest: bool = False) -> FloatArray:
     """The reference's colours (n, 4) of a scene at positions (n,) of the view."""
     slopes = ref.slopes_of(scene, view.camera, view.size, surface)
-    return ref.composite(scene, surface.world[..., :2].reshape(-1, 2), slopes)
+    return ref.composite(scene, surface.world[..., :2].reshape(-1, 2), slopes, nearest)
 
 
 def sample_offsets() -> FloatArray:

@@ -187,6 +187,14 @@ def repainted(scene: dg.Scene, relief: dg.Relief) -> dg.Scene:
     return copy
 
 
+def drawn_by(scene: dg.Scene, technique: dg.Technique) -> dg.Scene:
+    """The same terrain and layers, drawn by another technique."""
+    copy = dg.Scene(scene.terrain, scene.exaggeration, scene.relief)
+    for layer in scene.layers:
+        copy._layers.append(dataclasses.replace(layer, technique=technique))
+    return copy
+
+
 def with_features(scene: dg.Scene, tables: list[dg.FeatureTable]) -> dg.Scene:
     """The same terrain and styles over other geometry, a table a layer."""
     copy = dg.Scene(scene.terrain, scene.exaggeration, scene.relief)

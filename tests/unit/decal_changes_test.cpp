@@ -230,10 +230,73 @@ TEST_CASE("an order of drawing is that of an index built with it", "[static]") {
     layers[1].draw_order = look.draw_order;
     const auto expected = build(layers);
     CHECK(picks(*reordered, rows_of(map)) == picks(*expected, rows_of(map)));
-    CHECK(draw_finest_level(*as_decals(reordered)).texels == draw_finest_level(*expected).texels);
+    const bool levels_are_same =
+        LevelPainter().draw(*as_decals(reordered)).texels == LevelPainter().draw(*expected).texels;
+    CHECK(levels_are_same);
     // And edits keep it.
     const auto edited = reordered->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {5}), MemoryAccount());
     CHECK(edited->query({450.0, 450.0}).front() == FeatureReference{1, 60});
+}
+
+TEST_CASE("levels are coloured from what was kept as they are from scratch", "[static]") {
+    Chance chance;
+    Map map = random_map(chance);
+    map.widest = 30.0;
+    std::vector<Layer> layers = map.layers();
+    if (GENERATE(false, true)) {
+        layers[1].stroke.styles[0].corner = Corner::miter;
+        layers[1].stroke.styles[0].bands = {{0.3, {250, 0, 0, 255}}, {1.0, {0, 250, 0, 100}}};
+    }
+    std::shared_ptr<const PreparedDecals> decals = build(layers);
+    LevelPainter painter;
+    auto last = painter.draw(*decals).texels;
+    const auto check = [&] {
+        const auto texels = painter.draw(*decals).texels;
+        // Not to be printed.
+        const bool is_right = texels == LevelPainter().draw(*decals).texels, is_new = texels != last;
+        CHECK(is_right);
+        CHECK(is_new);
+        last = texels;
+    };
+    const auto restyle = [&](const LayerLook& look) {
+        decals = as_decals(decals->restyled(Span<const LayerLook>(&look, 1), MemoryAccount()));
+    };
+    LayerLook look;
+    for (size_t i = 0; i < 60; ++i)
+        for (const size_t channel : {4 * i, size_t{255}, 7 * i % 256, i % 3 * 120})
+            look.fill.colors.push_back(static_cast<uint8_t>(channel));
+    restyle(look);
+    check();
+    look = {};
+    for (int64_t feature = 0; feature < 60; ++feature)
+        look.draw_order.push_back((7 * feature + 3) % 60);
+    restyle(look);
+    check();
+    look = {};
+    look.layer = 1;
+    look.stroke.widths = {25.0};
+    restyle(look);
+    check();
+    decals = as_decals(decals->edited(edit_of(0, {chance.part(5, 300.0)}, {}, {3, 4}), MemoryAccount()));
+    check();
+}
+
+TEST_CASE("what levels keep is counted, or given up where there is no room", "[static]") {
+    Chance chance;
+    const auto decals = build(random_map(chance).layers());
+    MemoryAccount memory;
+    LevelPainter painter(memory);
+    const auto texels = painter.draw(*decals).texels;
+    const uint64_t kept = memory.bytes("static: levels");
+    CHECK(kept > 0);
+    painter = LevelPainter(memory);
+    CHECK(memory.total() == 0);
+    memory.set_budget(kept - 1);
+    for (int i = 0; i < 2; ++i) {
+        const bool is_same = painter.draw(*decals).texels == texels;
+        CHECK(is_same);
+        CHECK(memory.total() == 0);
+    }
 }
 
 TEST_CASE("looks that hide, widen and come back", "[static]") {

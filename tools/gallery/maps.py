@@ -193,6 +193,22 @@ def _lines_scene() -> dg.Scene:
     return scene
 
 
+def zooms() -> Image.Image:
+    """Isolines and roads of 12 m, and of 1.6 pixels, from three distances (after Zechmeister 2020, figure 3.2)."""
+    size = panel_size(3, 170)
+    roads = _cover()[_cover()["material"].isin(("Road", "Freeway"))]
+    panels = {}
+    for label, looks in (("12 m", {"width": 12, "width_units": "m"}), ("1.6 pixels", {"width": 1.6})):
+        scene = _scene(dg.Relief(color="#e9e5dc", strength=0.45))
+        outline: dict[str, Any] = {**looks, "color": BLUE}
+        scene.add_polygons(roads, color="none", outline=dg.Outline(**outline))
+        scene.add_lines(_isolines(100.0), color=RED, **looks)
+        for distance in (12_000.0, 4000.0, 1200.0):
+            camera = dg.Camera.orbit((-1600.0, -3000.0, 300.0), distance=distance, azimuth=200, elevation=32)
+            panels[f"{label}, from {distance / 1000:g} km"] = draw(scene, size, camera)
+    return sheet(panels, 3)
+
+
 def antialiasing() -> Image.Image:
     """A part of the valleys, three times enlarged, with each mode."""
     modes: dict[str, dict[str, Any]] = {
@@ -254,6 +270,7 @@ PICTURES: dict[str, Callable[[], Image.Image]] = {
     "categories.jpg": categories,
     "numbers.jpg": numbers,
     "slopes.png": slopes,
+    "zooms.jpg": zooms,
     "antialiasing.png": antialiasing,
     "silhouettes.png": silhouettes,
     "indexes.png": indexes,

@@ -1,4 +1,4 @@
-// The samples of antialias="coverage" (sample_offsets.h).
+// The samples that are drawn in passes of their own (sample_offsets.h).
 #include "shared/sample_offsets.h"
 
 const int sample_count = SAMPLE_COUNT;

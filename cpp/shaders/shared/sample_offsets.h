@@ -1,6 +1,6 @@
-// Where in a pixel the samples of antialias="coverage" lie, counted from its centre: a scrambled (0, 5,
-// 2)-net (Sobol' points), chosen for the smallest error on straight edges by tools/sample_pattern.py. Read by C++ and
-// GLSL alike, each with its own `vec2`.
+// Where in a pixel the samples lie that are drawn in passes of their own, counted from its centre: a scrambled
+// (0, 5, 2)-net (Sobol' points), chosen for the smallest error on straight edges by tools/sample_pattern.py. Read by
+// C++ and GLSL alike, each with its own `vec2`.
 #ifndef DECALGL_SAMPLE_OFFSETS_H
 #define DECALGL_SAMPLE_OFFSETS_H
 

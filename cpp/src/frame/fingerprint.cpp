@@ -15,6 +15,10 @@ void add(const Stroke& stroke, DigestBuilder& builder) {
     add(stroke.widths, builder);
     add(stroke.style_of, builder);
     builder.add_value(stroke.widest);
+    builder.add_value(stroke.units);
+    for (const double limit : {stroke.limits.least_px, stroke.limits.most_px, stroke.limits.least_metres,
+                               stroke.limits.most_metres})
+        builder.add_value(limit);
     for (const StrokeStyle& style : stroke.styles) {
         builder.add_value(style.corner);
         builder.add_value(style.cap);

@@ -145,7 +145,8 @@ void Pipeline::set_view() {
              request.terrain_error,
              options_.coverage,
              &view_block_,
-             &timings_};
+             &timings_,
+             false};
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     write_view_block();
@@ -205,8 +206,12 @@ void Pipeline::make_targets() {
     needs.antialias = request_.antialias;
     needs.multisamples = request_.antialias == Antialias::msaa ? multisamples() : 0;
     needs.has_overlay = has_overlay(*scene_);
-    needs.has_depth = std::any_of(techniques_.begin(), techniques_.end(),
-                                  [&](const auto& technique) { return technique->needs_depth(view_); });
+    for (const auto& technique : techniques_) {
+        if (technique->needs_depth(view_))
+            needs.overlay_depth = std::max(needs.overlay_depth, OverlayDepth::depth);
+        if (technique->needs_stencil(view_))
+            needs.overlay_depth = OverlayDepth::depth_and_stencil;
+    }
     if (targets_ && targets_->needs == needs)
         return;
     targets_.reset();  // both at once may not fit
@@ -278,7 +283,10 @@ std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
         return ids;
     const gl::Texture2D target =
         gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, targets_->needs.width, targets_->needs.height);
-    const gl::Framebuffer framebuffer = gl::Framebuffer::create("ids", {{GL_COLOR_ATTACHMENT0, &target}});
+    std::vector<gl::Attachment> attachments{{GL_COLOR_ATTACHMENT0, &target}};
+    if (targets_->needs.overlay_depth == OverlayDepth::depth_and_stencil)
+        attachments.push_back({GL_DEPTH_STENCIL_ATTACHMENT, &targets_->seen.overlay_depth});
+    const gl::Framebuffer framebuffer = gl::Framebuffer::create("ids", attachments);
     for (const Piece& piece : pieces_) {
         draw_centres(piece);
         const GBufferView view = look_through_lens(targets_->seen);

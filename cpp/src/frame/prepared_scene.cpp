@@ -66,6 +66,35 @@ void prepare_pass(const std::string& technique, const TechniqueInput& input, Pro
         prepared.passes.push_back(std::move(pass));
 }
 
+// What one technique draws of a layer, and the layer's place in the scene.
+struct LayerPart {
+    Layer layer;
+    uint32_t place;
+};
+
+// Polygons whose outlines have widths on the screen are two parts: their fills, and their outlines over them.
+std::vector<LayerPart> parts_of(const std::vector<Layer>& layers) {
+    std::vector<LayerPart> parts;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        const Layer& layer = layers[i];
+        const bool is_split = layer.features.kind == FeatureKind::polygons && !layer.fill.empty() &&
+                              !layer.stroke.empty() && layer.stroke.follows_view();
+        if (is_split && layer.outline_order == OutlineOrder::feature)
+            throw Error(ErrorKind::unsupported,
+                        "layer '" + layer.name +
+                            "': outlines with widths on the screen lie over all fills of their layer; give "
+                            "order='layer', or width_units='m'");
+        parts.push_back({layer, static_cast<uint32_t>(i)});
+        if (!is_split)
+            continue;
+        parts.push_back(parts.back());
+        parts[parts.size() - 2].layer.stroke = Stroke();
+        parts[parts.size() - 2].layer.technique = TechniqueChoice{"static", nullptr};
+        parts.back().layer.fill = Fill();
+    }
+    return parts;
+}
+
 void prepare_layers(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
                     Progress progress, PreparedScene& prepared) {
     const bool has_ground = scene.terrain.rows() > 1 && scene.terrain.columns() > 1;
@@ -80,13 +109,15 @@ void prepare_layers(const Scene& scene, const RendererOptions& options, const Me
     input.threads = options.threads;
     input.memory = memory;
     input.bvh = options.bvh;
+    const std::vector<LayerPart> parts = parts_of(scene.layers);
     size_t end = 0;
-    for (size_t begin = 0; begin < scene.layers.size(); begin = end) {
-        const TechniqueChoice& choice = scene.layers[begin].technique;
-        while (end < scene.layers.size() && scene.layers[end].technique == choice)
-            ++end;
-        input.layers = Span<const Layer>(scene.layers).subspan(begin, end - begin);
-        input.first_layer = static_cast<uint32_t>(begin);
+    for (size_t begin = 0; begin < parts.size(); begin = end) {
+        const TechniqueChoice& choice = parts[begin].layer.technique;
+        std::vector<Layer> run;
+        for (; end < parts.size() && parts[end].layer.technique == choice; ++end)
+            run.push_back(parts[end].layer);
+        input.layers = run;
+        input.first_layer = parts[begin].place;
         const std::string technique =
             choice.name == "static" && options.index == "bvh" ? "static_bvh" : choice.name;
         prepare_pass(technique, input, progress, prepared);

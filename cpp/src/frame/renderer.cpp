@@ -10,6 +10,7 @@
 #include "frame/sample_pattern.h"
 #include "frame/scene_changes.h"
 #include "frame/stats.h"
+#include "frame/view_setup.h"
 
 namespace decalgl {
 namespace {
@@ -159,9 +160,14 @@ LayerLook Renderer::look(uint32_t layer) const {
     LayerLook look;
     look.layer = layer;
     const size_t features = scene->layers[layer].rows.size();
-    for (const PreparedPass& pass : scene->passes)
-        if (pass.has_layer(layer))
-            return pass.prepared->look_of(layer, features);
+    for (const PreparedPass& pass : scene->passes) {
+        if (!pass.has_layer(layer))
+            continue;
+        const LayerLook part = pass.prepared->look_of(layer, features);
+        for (const DecalRole role : {DecalRole::fill, DecalRole::stroke, DecalRole::casing})
+            if (!part.of(role)->colors.empty())
+                *look.of(role) = *part.of(role);
+    }
     return look;
 }
 
@@ -173,6 +179,11 @@ void Renderer::restyle(const std::vector<LayerLook>& looks) {
 void Renderer::edit(const LayerEdit& edit) {
     const auto before = state_->require_scene("edit");
     state_->change_scene(before, edited_scene(*before, edit, state_->memory));
+}
+
+void Renderer::tune(uint32_t layer, const TechniqueOptions& options) {
+    const auto before = state_->require_scene("tune");
+    state_->change_scene(before, tuned_scene(*before, layer, options));
 }
 
 void Renderer::set_lens(const Lens& lens, const std::vector<LayerLook>& looks) {
@@ -314,8 +325,10 @@ std::vector<PickedFeature> Frame::pick(int x, int y) const {
     const std::vector<double>& positions = world();
     std::vector<PickedFeature> picked;
     const PreparedScene& scene = *state_->scene;
-    const SeenPoint point{positions[3 * pixel], positions[3 * pixel + 1], state_->gradients[2 * pixel],
-                          state_->gradients[2 * pixel + 1], basis_of(state_->request.camera).forward.z};
+    const SeenPoint point =
+        seen_point(state_->request.camera, height(),
+                   {positions[3 * pixel], positions[3 * pixel + 1], positions[3 * pixel + 2]},
+                   {state_->gradients[2 * pixel], state_->gradients[2 * pixel + 1]});
     const bool in_lens = scene.lens && scene.lens->contains(x + 0.5, y + 0.5, point.x, point.y);
     for (size_t pass = scene.passes.size(); pass-- > 0;) {
         const PreparedPass& each = scene.passes[pass];

@@ -1,7 +1,6 @@
 #include "frame/scene_changes.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -18,18 +17,36 @@ void require_layers(const PreparedScene& scene, Span<const LayerLook> looks) {
     }
 }
 
-// The looks of a pass's own layers.
-std::vector<LayerLook> looks_of(const PreparedPass& pass, Span<const LayerLook> looks) {
+// Whether fills and outlines of a layer are of two passes.
+bool is_split(const PreparedScene& scene, uint32_t layer) {
+    return std::count_if(scene.passes.begin(), scene.passes.end(),
+                         [&](const PreparedPass& pass) { return pass.has_layer(layer); }) > 1;
+}
+
+// The looks of a pass's own layers, and of a layer that two passes share, its own part: fills lie in the one below.
+std::vector<LayerLook> looks_of(const PreparedScene& scene, const PreparedPass& pass,
+                                Span<const LayerLook> looks) {
     std::vector<LayerLook> own;
-    std::copy_if(looks.begin(), looks.end(), std::back_inserter(own),
-                 [&](const LayerLook& look) { return pass.has_layer(look.layer); });
+    for (const LayerLook& look : looks) {
+        if (!pass.has_layer(look.layer))
+            continue;
+        own.push_back(look);
+        if (!is_split(scene, look.layer))
+            continue;
+        const bool has_fills =
+            pass.first_layer + pass.layer_count == look.layer + 1 && pass.technique != "dynamic";
+        if (has_fills)
+            own.back().stroke = DecalLook();
+        else
+            own.back().fill = DecalLook();
+    }
     return own;
 }
 
 // What a pass is with other looks; null where none are its own. Errors of a technique do not know the layer's name.
 std::shared_ptr<const Prepared> restyled(const PreparedScene& scene, const PreparedPass& pass,
                                          Span<const LayerLook> all_looks, const MemoryAccount& memory) {
-    const std::vector<LayerLook> looks = looks_of(pass, all_looks);
+    const std::vector<LayerLook> looks = looks_of(scene, pass, all_looks);
     if (looks.empty())
         return nullptr;
     try {
@@ -87,6 +104,10 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
     require_layer(scene, edit.layer);
     const PreparedLayer& layer = scene.layers[edit.layer];
     validate(edit, layer.kind, layer.rows.size(), layer.name);
+    if (is_split(scene, edit.layer))
+        throw Error(ErrorKind::unsupported, "layer '" + layer.name +
+                                                "': polygons whose outlines have widths on the screen cannot "
+                                                "be edited; prepare the scene anew");
     auto changed = std::make_shared<PreparedScene>(scene);
     const auto pass = std::find_if(changed->passes.begin(), changed->passes.end(),
                                    [&](const PreparedPass& each) { return each.has_layer(edit.layer); });
@@ -104,6 +125,22 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
         if (look.layer == edit.layer)
             append(edit, layer.rows.size(), look);
     look_through_lens(*changed, memory);
+    return changed;
+}
+
+std::shared_ptr<const PreparedScene> tuned_scene(const PreparedScene& scene, uint32_t layer,
+                                                 const TechniqueOptions& options) {
+    require_layer(scene, layer);
+    auto changed = std::make_shared<PreparedScene>(scene);
+    changed->fingerprint = SceneFingerprint(Digest{});
+    for (PreparedPass& pass : changed->passes) {
+        if (!pass.has_layer(layer))
+            continue;
+        pass.prepared = pass.prepared->tuned(options);
+        if (!pass.prepared)
+            throw Error(ErrorKind::unsupported, "layer '" + scene.layers[layer].name + "' is drawn by technique '" +
+                                                    pass.technique + "', which has nothing like that to change");
+    }
     return changed;
 }
 

@@ -4,15 +4,19 @@
 
 namespace decalgl {
 
-SeenTargets::SeenTargets(int width, int height, bool has_overlay, bool has_depth, const MemoryAccount& memory)
+SeenTargets::SeenTargets(int width, int height, bool has_overlay, OverlayDepth depth,
+                         const MemoryAccount& memory)
     : gbuffer(width, height, memory) {
     if (!has_overlay)
         return;
     overlay = gl::Texture2D::create(memory, "frame: overlay", GL_RGBA8, width, height);
     std::vector<gl::Attachment> attachments{{GL_COLOR_ATTACHMENT0, &overlay}};
-    if (has_depth) {
-        overlay_depth = gl::Texture2D::create(memory, "frame: overlay", GL_DEPTH_COMPONENT32F, width, height);
-        attachments.push_back({GL_DEPTH_ATTACHMENT, &overlay_depth});
+    if (depth != OverlayDepth::none) {
+        const bool stencil = depth == OverlayDepth::depth_and_stencil;
+        overlay_depth = gl::Texture2D::create(memory, "frame: overlay",
+                                              stencil ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F, width, height);
+        attachments.push_back({stencil ? GLenum{GL_DEPTH_STENCIL_ATTACHMENT} : GLenum{GL_DEPTH_ATTACHMENT},
+                               &overlay_depth});
     }
     overlay_framebuffer = gl::Framebuffer::create("overlay", attachments);
 }
@@ -20,13 +24,13 @@ SeenTargets::SeenTargets(int width, int height, bool has_overlay, bool has_depth
 bool TargetNeeds::operator==(const TargetNeeds& other) const {
     const auto members = [](const TargetNeeds& needs) {
         return std::tie(needs.width, needs.height, needs.antialias, needs.multisamples, needs.has_overlay,
-                        needs.has_depth);
+                        needs.overlay_depth);
     };
     return members(*this) == members(other);
 }
 
 Targets::Targets(const TargetNeeds& needed, const MemoryAccount& memory)
-    : needs(needed), seen(needed.width, needed.height, needed.has_overlay, needed.has_depth, memory) {
+    : needs(needed), seen(needed.width, needed.height, needed.has_overlay, needed.overlay_depth, memory) {
     const auto make = [&](const char* name, GLenum format, gl::Texture2D& texture,
                           gl::Framebuffer& framebuffer) {
         texture =

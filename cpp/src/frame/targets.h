@@ -12,11 +12,13 @@
 
 namespace decalgl {
 
+// What techniques need beside the overlay's colour.
+enum class OverlayDepth { none, depth, depth_and_stencil };
+
 // The terrain at each texel, and the layers over it.
 struct SeenTargets {
     SeenTargets() = default;
-    // `has_depth`: for techniques that need one in the overlay.
-    SeenTargets(int width, int height, bool has_overlay, bool has_depth, const MemoryAccount& memory);
+    SeenTargets(int width, int height, bool has_overlay, OverlayDepth depth, const MemoryAccount& memory);
 
     GBuffer gbuffer;
     gl::Texture2D overlay;
@@ -30,7 +32,7 @@ struct TargetNeeds {
     Antialias antialias = Antialias::none;
     int multisamples = 0;  // samples a pixel that the driver draws at once, for msaa; 0: none
     bool has_overlay = false;
-    bool has_depth = false;  // in the overlay
+    OverlayDepth overlay_depth = OverlayDepth::none;
 
     bool operator==(const TargetNeeds& other) const;
 };

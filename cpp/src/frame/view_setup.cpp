@@ -224,6 +224,31 @@ ViewBlock make_view_block(const Camera& camera, int width, int height, const Hei
     return block;
 }
 
+SeenPoint seen_point(const Camera& camera, int height, glm::dvec3 place, glm::dvec2 gradient) {
+    const CameraBasis basis = basis_of(camera);
+    const glm::dvec3 from_eye = place - camera.eye;
+    const double half =
+        camera.orthographic() ? 0.5 * camera.view_height : half_height_at_unit_distance(camera);
+    const double depth = camera.orthographic() ? 1.0 : glm::dot(from_eye, basis.forward);
+    const double pixels = height / (2.0 * half * depth);
+    const glm::dvec3 lean = camera.orthographic() ? glm::dvec3(0.0) : basis.forward / depth;
+    // Pixels for a metre of each axis: what the view's own axes say, less what a growing depth takes back.
+    const glm::dvec3 x = pixels * (basis.right - glm::dot(from_eye, basis.right) * lean);
+    const glm::dvec3 y = pixels * (basis.up - glm::dot(from_eye, basis.up) * lean);
+    SeenPoint point;
+    point.x = place.x;
+    point.y = place.y;
+    point.gradient_x = gradient.x;
+    point.gradient_y = gradient.y;
+    point.forward_z = basis.forward.z;
+    point.east = {x.x + x.z * gradient.x, y.x + y.z * gradient.x};
+    point.north = {x.y + x.z * gradient.y, y.y + y.z * gradient.y};
+    point.lean_x = lean.x + lean.z * gradient.x;
+    point.lean_y = lean.y + lean.z * gradient.y;
+    point.pixels_per_metre = pixels;
+    return point;
+}
+
 std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain,
                                       const Camera& camera, int width, int height, double terrain_error) {
     const CameraBasis basis = basis_of(camera);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "decalgl/frame/camera.h"
+#include "decalgl/technique/technique.h"
 #include "decalgl/terrain/tiles.h"
 #include "shared/view_block.h"
 
@@ -31,5 +32,8 @@ double widest_pixel(const std::vector<VisibleTile>& tiles, const Heightfield& te
 // point is too far away to be held in block and sample numbers.
 ViewBlock make_view_block(const Camera& camera, int width, int height, const Heightfield& terrain,
                           const PositionGrid& positions, double base_depth);
+
+// A place on the map with the ground's gradient there, as a camera sees it in a picture of this height.
+SeenPoint seen_point(const Camera& camera, int height, glm::dvec3 place, glm::dvec2 gradient);
 
 }  // namespace decalgl

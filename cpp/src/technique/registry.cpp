@@ -4,6 +4,9 @@
 
 #include "decalgl/core/error.h"
 #include "decalgl/technique/technique.h"
+#include "technique/dynamic_lines/dynamic_lines.h"
+#include "technique/loops/loops.h"
+#include "technique/shadow_volumes/shadow_volumes.h"
 #include "technique/distance_field/distance_field.h"
 #include "technique/static_bvh/static_bvh.h"
 #include "technique/static_decals/static_decals.h"
@@ -15,8 +18,11 @@ using MakeTechnique = std::function<std::unique_ptr<Technique>()>;
 
 const std::map<std::string, MakeTechnique>& registry() {
     static const std::map<std::string, MakeTechnique> techniques = {
+        {"loops", [] { return std::make_unique<Loops>(); }},
+        {"dynamic", [] { return std::make_unique<DynamicLines>(); }},
         {"distance_field", [] { return std::make_unique<DistanceField>(); }},
         {"static", [] { return std::make_unique<StaticDecals>(); }},
+        {"volume", [] { return std::make_unique<ShadowVolumes>(); }},
         {"static_bvh", [] { return std::make_unique<StaticBvh>(); }},
     };
     return techniques;

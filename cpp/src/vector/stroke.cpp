@@ -75,7 +75,24 @@ bool same(const LinePattern& a, const LinePattern& b) {
                       });
 }
 
+void validate(const WidthLimits& limits, const std::string& layer) {
+    for (const double least : {limits.least_px, limits.least_metres})
+        if (!std::isfinite(least) || least < 0.0)
+            refuse(layer, "the least width must be 0 or more");
+    if (!(limits.least_px <= limits.most_px && limits.least_metres <= limits.most_metres))
+        refuse(layer, "the least width must not be above the most");
+}
+
 }  // namespace
+
+bool operator==(const WidthLimits& a, const WidthLimits& b) {
+    return a.least_px == b.least_px && a.most_px == b.most_px && a.least_metres == b.least_metres &&
+           a.most_metres == b.most_metres;
+}
+
+bool WidthLimits::any() const {
+    return !(*this == WidthLimits{});
+}
 
 bool operator==(const StrokeStyle& a, const StrokeStyle& b) {
     return a.corner == b.corner && a.cap == b.cap && a.miter_limit == b.miter_limit &&
@@ -95,10 +112,11 @@ void validate(const Stroke& stroke, size_t features, const std::string& layer) {
     for (size_t i = 0; i < stroke.widths.size(); ++i) {
         if (!std::isfinite(stroke.widths[i]) || stroke.widths[i] < 0.0)
             refuse(layer, "feature " + std::to_string(i) + " has width " + std::to_string(stroke.widths[i]) +
-                              "; widths are lengths in metres, 0 or more");
+                              "; widths are lengths, 0 or more");
     }
+    validate(stroke.limits, layer);
     if (!std::isfinite(stroke.widest) || stroke.widest < 0.0)
-        refuse(layer, "the widest that a stroke may become must be a length in metres");
+        refuse(layer, "the widest that a stroke may become must be a length");
     require_places(stroke.style_of, features, stroke.styles.size(), layer);
     for (const StrokeStyle& style : stroke.styles) {
         if (!(style.miter_limit >= 1.0 && style.miter_limit <= 180.0))

@@ -30,8 +30,8 @@ class FillDecals:
 class StrokeDecals:
     """Strokes, casings or outlines of a layer.
 
-    drawn, place: as of fills. half_widths: (features,) in metres. side: "normal", or which side of the rings is
-    left of outlines, "inset" or "offset", whose half widths are whole widths.
+    drawn, place: as of fills. half_widths: (features,) in the stroke's units. side: "normal", or which side of the
+    rings is left of outlines, "inset" or "offset", whose half widths are whole widths.
     """
 
     stroke: StrokeLike
@@ -66,10 +66,18 @@ def decals_of(layer: LayerLike, only: BoolArray | None = None) -> Iterator[FillD
 
 def follows_slopes(scene: SceneLike) -> bool:
     """Whether anything in a scene looks different on slopes."""
-    strokes = [
-        stroke for layer in scene.layers for stroke in (layer.casing, layer.stroke) if stroke is not None
-    ]
-    return any(style.slope_correction != "none" for stroke in strokes for style in stroke.styles)
+    return follows_view(scene) or any(
+        style.slope_correction != "none" for stroke in _strokes(scene) for style in stroke.styles
+    )
+
+
+def follows_view(scene: SceneLike) -> bool:
+    """Whether any stroke in a scene has a width on the screen."""
+    return any(stroke.follows_view for stroke in _strokes(scene))
+
+
+def _strokes(scene: SceneLike) -> list[StrokeLike]:
+    return [stroke for layer in scene.layers for stroke in (layer.casing, layer.stroke) if stroke is not None]
 
 
 def _alpha(colors: object) -> IntArray:

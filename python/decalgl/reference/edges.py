@@ -15,10 +15,11 @@ from .decals import FillDecals, StrokeDecals, decals_of
 from .fills import Edges, hatch_clearance, inside_polygons
 from .membership import hatches_of
 from .points import strips
+from .screen import touching_on_screen
 from .strokes import Slopes, StyledStroke, styled_strokes
 
 if TYPE_CHECKING:
-    from .contract import FloatArray, IntArray, LayerLike, SceneLike
+    from .contract import FloatArray, IntArray, LayerLike, SceneLike, StrokeLike
     from .points import Strip
     from .strokes import Touch
 
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 CHUNK = 100_000
 # The first search reaches this share of everything's extent, and each further one some times farther.
 FIRST_REACH, GROWTH = 1e-3, 8.0
+# Pixels within which borders of widths on the screen are looked for.
+SCREEN_LIMIT = 2.0
 
 
 def edge_distance(
@@ -91,6 +94,13 @@ def _stroke_distance(
     """Distance (n,) to the nearest border of a stroke, looked for farther and farther away."""
     strokes = styled_strokes(layer.features, decals.stroke, decals.half_widths, decals.drawn)
     nearest = np.full(len(xy), np.inf)
+    if decals.stroke.follows_view:
+        for strip in strips(xy):
+            for stroke in strokes:
+                there = None if slopes is None else slopes[strip.index]
+                distance = _screen_borders(decals.stroke, stroke, strip, there)
+                nearest[strip.index] = np.minimum(nearest[strip.index], distance)
+        return nearest
     everything = np.concatenate([np.asarray(layer.features.coords, dtype=np.float64).reshape(-1, 2), xy])
     extent = float(np.hypot(*np.ptp(everything, axis=0))) + float(decals.half_widths.max())
     reach, left = FIRST_REACH * extent, np.arange(len(xy))
@@ -133,6 +143,22 @@ def _borders(stroke: StyledStroke, points: Strip, slopes: Slopes | None, reach: 
         # A metre of the slope is less on the map.
         nearest /= np.sqrt(1.0 + (slopes.gradient**2).sum(axis=1))
     return nearest
+
+
+def _screen_borders(
+    stroke: StrokeLike, styled: StyledStroke, points: Strip, slopes: Slopes | None
+) -> FloatArray:
+    """Distance (n,) to the nearest border of a stroke with a width on the screen, as metres seen head-on.
+
+    Infinite where none comes nearer than SCREEN_LIMIT pixels.
+    """
+    if slopes is None or slopes.planes is None:
+        raise ValueError("Widths on the screen need the planes that points are seen on; see `slopes_of`.")
+    deepest = np.full(len(points.index), -np.inf)
+    for touch in touching_on_screen(styled, stroke, points, slopes.planes, SCREEN_LIMIT):
+        np.maximum.at(deepest, touch.point, touch.clearance)
+    distance: FloatArray = np.abs(deepest) / slopes.planes.pixels_per_metre
+    return distance
 
 
 def _band_distance(stroke: StyledStroke, touch: Touch) -> FloatArray:

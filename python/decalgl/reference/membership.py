@@ -15,12 +15,13 @@ import numpy as np
 from .decals import FillDecals, StrokeDecals, decals_of
 from .fills import Edges, hatch_clearance, inside_polygons
 from .points import strips
+from .screen import touching_on_screen
 from .strokes import Slopes, StyledStroke, Touch, styled_strokes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike
+    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike, StrokeLike
     from .points import Strip
 
 
@@ -63,15 +64,21 @@ class Membership:
 
 
 def membership(
-    layer: LayerLike, xy: FloatArray, only: BoolArray | None = None, slopes: Slopes | None = None
+    layer: LayerLike,
+    xy: FloatArray,
+    only: BoolArray | None = None,
+    slopes: Slopes | None = None,
+    nearest: bool = False,
 ) -> Membership:
     """Decals of a layer at map points xy (n, 2), metres; NaN points are in none.
 
     only: mask (features,) of the features to look at, all by default. Decals of alpha 0 or width 0 are not drawn.
     slopes: of the points, for strokes with slope correction; without them the ground is level.
+    nearest: of strokes, and apart from them of casings, only the one whose centre line is nearest holds a point
+        (Thöny et al. 2018). Outlines that are cut by their rings, or drawn each over its fill, stay in order.
     """
     count = len(layer.features.rows)
-    finders = [_Finder(layer, decals, xy) for decals in decals_of(layer, only)]
+    finders = [_Finder(layer, decals, xy, nearest) for decals in decals_of(layer, only)]
     points, places, features, tints = ([np.empty(0, dtype=np.int64)] for _ in range(4))
     palette, first = [np.empty((0, 4))], 0
     cut = list(strips(xy))
@@ -98,8 +105,14 @@ class _Finder:
     palette: (m, 4) premultiplied colours; one a feature, then those of bands.
     """
 
-    def __init__(self, layer: LayerLike, decals: FillDecals | StrokeDecals, xy: FloatArray) -> None:
+    def __init__(
+        self, layer: LayerLike, decals: FillDecals | StrokeDecals, xy: FloatArray, nearest: bool
+    ) -> None:
         self.decals = decals
+        self.nearest = nearest and not (
+            layer.features.kind == "polygons"
+            and (layer.outline_order == "feature" or layer.outline_mode != "normal")
+        )
         self.edges: Edges | None = None
         self.strokes: list[StyledStroke] = []
         if isinstance(decals, FillDecals) or decals.side != "normal":
@@ -125,9 +138,12 @@ class _Finder:
             kept = _hatched(self.decals, feature, np.stack([points.x[rank], points.y[rank]], axis=1))
             return feature[kept], rank[kept], feature[kept]
         keys, tints = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+        gauges = [np.empty(0)]
         for stroke, first in zip(self.strokes, self.bands_at[1:], strict=True):
-            key, share = covered_pairs(stroke, points, slopes)
+            touches = _touching(self.decals.stroke, stroke, points, slopes)
+            key, share, gauge = covered_pairs(touches, count)
             keys.append(key)
+            gauges.append(gauge)
             feature, bands = key // count, stroke.style.bands
             if bands:
                 band = np.searchsorted([band.reach for band in bands], share, side="left")
@@ -136,35 +152,45 @@ class _Finder:
                 tints.append(feature)
         key, tint = np.concatenate(keys), np.concatenate(tints)
         kept = self.palette[tint, 3] > 0.0
+        if self.nearest:
+            kept &= self._is_nearest(key, np.concatenate(gauges), count)
         if self.edges is not None:
             kept &= np.isin(key, inside_polygons(self.edges, points)) == (self.decals.side == "inset")
         feature, rank = np.divmod(key[kept], count)
         return feature, rank, tint[kept]
 
-
-def covered_pairs(stroke: StyledStroke, points: Strip, slopes: Slopes | None) -> tuple[IntArray, FloatArray]:
-    """Ascending keys feature * n + point of the points that strokes cover, and gauge over half width of each."""
-    keys, shares = [np.empty(0, dtype=np.int64)], [np.empty(0)]
-    for touch in stroke.touching(points, slopes):
-        key, share = _nearest(_covered(touch, len(points.index)))
-        keys.append(key)
-        shares.append(share)
-    return _nearest((np.concatenate(keys), np.concatenate(shares)))
-
-
-def _covered(touch: Touch, count: int) -> tuple[IntArray, FloatArray]:
-    kept = np.flatnonzero(touch.clearance >= 0.0)
-    key: IntArray = touch.feature[kept] * count + touch.point[kept]
-    return key, touch.gauge[kept] / touch.half_width[kept]
+    def _is_nearest(self, key: IntArray, gauge: FloatArray, count: int) -> BoolArray:
+        """Which pairs have the least gauge at their point; of equal ones that on top."""
+        feature, rank = np.divmod(key, count)
+        order = np.lexsort((-self.decals.place[feature], gauge, rank))
+        first = np.diff(rank[order], prepend=-1) != 0
+        chosen = np.zeros(len(key), dtype=np.bool_)
+        chosen[order[first]] = True
+        return chosen
 
 
-def _nearest(pairs: tuple[IntArray, FloatArray]) -> tuple[IntArray, FloatArray]:
-    """Distinct keys, ascending, and the least share of each."""
-    key, share = pairs
-    order = np.argsort(key, kind="stable")
-    key, share = key[order], share[order]
-    first = np.flatnonzero(np.diff(key, prepend=-1))
-    return key[first], np.minimum.reduceat(share, first) if len(first) else share
+def _touching(
+    stroke: StrokeLike, styled: StyledStroke, points: Strip, slopes: Slopes | None
+) -> Iterator[Touch]:
+    if not stroke.follows_view:
+        return styled.touching(points, slopes)
+    if slopes is None or slopes.planes is None:
+        raise ValueError("Widths on the screen need the planes that points are seen on; see `slopes_of`.")
+    return touching_on_screen(styled, stroke, points, slopes.planes)
+
+
+def covered_pairs(touches: Iterable[Touch], count: int) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Of points that strokes cover, ascending keys feature * count + point; gauge over half width, and gauge, of each."""
+    keys, shares, gauges = [np.empty(0, dtype=np.int64)], [np.empty(0)], [np.empty(0)]
+    for touch in touches:
+        kept = np.flatnonzero(touch.clearance >= 0.0)
+        keys.append(touch.feature[kept] * count + touch.point[kept])
+        gauges.append(touch.gauge[kept])
+        shares.append(touch.gauge[kept] / touch.half_width[kept])
+    key, share, gauge = np.concatenate(keys), np.concatenate(shares), np.concatenate(gauges)
+    order = np.lexsort((share, key))
+    order = order[np.diff(key[order], prepend=-1) != 0]
+    return key[order], share[order], gauge[order]
 
 
 def _hatched(decals: FillDecals, feature: IntArray, xy: FloatArray) -> BoolArray:

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .decals import follows_slopes
+from .decals import follows_slopes, follows_view
 from .edges import edge_distance
-from .membership import membership
+from .membership import Membership, membership
 from .rays import RayCaster, Surface, Viewpoint, pixel_centres, raycast, viewpoint
+from .screen import screen_planes
 from .strokes import Slopes
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
         Crop,
         FloatArray,
         IntArray,
-        LayerLike,
         SceneLike,
         Size,
     )
@@ -73,12 +73,14 @@ def render_ids(
     surface: Surface | None = None,
     distances: bool = True,
     limit: float = np.inf,
+    nearest: bool = False,
 ) -> Ids:
     """Topmost feature at pixel centres.
 
     size: picture width and height in pixels. crop: (x0, y0, x1, y1) in pixels, the whole picture by
     default; the result has shape (y1 - y0, x1 - x0). surface: what the centres of the crop see, to
     save the rays. distances: False leaves the edge distance out (NaN); limit: see `edge_distance`.
+    nearest: see `membership`.
     """
     x0, y0, x1, y1 = crop or (0, 0, *size)
     shape = (y1 - y0, x1 - x0)
@@ -88,7 +90,7 @@ def render_ids(
     slopes = slopes_of(scene, camera, size, surface)
     ids, layers = np.full(len(xy), -1, dtype=np.int64), np.full(len(xy), -1, dtype=np.int32)
     for index, layer in enumerate(scene.layers):
-        top = membership(layer, xy, slopes=slopes).topmost()
+        top = membership(layer, xy, slopes=slopes, nearest=nearest).topmost()
         drawn = top >= 0
         ids[drawn] = np.asarray(layer.features.rows, dtype=np.int64)[top[drawn]]
         layers[drawn] = index
@@ -97,25 +99,37 @@ def render_ids(
 
 
 def slopes_of(scene: SceneLike, camera: CameraLike, size: Size, surface: Surface) -> Slopes | None:
-    """What slope correction needs at the positions of a surface, flattened; None where no style asks for it."""
+    """What slope correction and widths on the screen need at a surface's positions, flattened.
+
+    None where no style asks for it.
+    """
     if not follows_slopes(scene):
         return None
-    gradient = surface.gradient.reshape(-1, 2)
-    if np.isnan(gradient[np.isfinite(surface.world.reshape(-1, 3)[:, 0])]).any():
-        raise ValueError("The surface has no gradients, and the scene has strokes with slope correction.")
-    return Slopes(gradient, viewpoint(camera, size).forward)
+    gradient, world = surface.gradient.reshape(-1, 2), surface.world.reshape(-1, 3)
+    if np.isnan(gradient[np.isfinite(world[:, 0])]).any():
+        raise ValueError("The surface has no gradients, and the scene has strokes that depend on slopes.")
+    return _slopes(scene, viewpoint(camera, size), world, gradient)
 
 
-def composite(scene: SceneLike, xy: FloatArray, slopes: Slopes | None = None) -> FloatArray:
-    """Premultiplied colour (n, 4), 0..1, of all features "over" one another at map points (n, 2)."""
+def _slopes(scene: SceneLike, view: Viewpoint, world: FloatArray, gradient: FloatArray) -> Slopes:
+    planes = screen_planes(view, world, gradient) if follows_view(scene) else None
+    return Slopes(gradient, view.forward, planes)
+
+
+def composite(
+    scene: SceneLike, xy: FloatArray, slopes: Slopes | None = None, nearest: bool = False
+) -> FloatArray:
+    """Premultiplied colour (n, 4), 0..1, of all features "over" one another at map points (n, 2).
+
+    nearest: see `membership`.
+    """
     result = np.zeros((len(xy), 4))
     for layer in scene.layers:
-        _composite_layer(result, layer, xy, slopes)
+        _composite_layer(result, membership(layer, xy, slopes=slopes, nearest=nearest))
     return result
 
 
-def _composite_layer(result: FloatArray, layer: LayerLike, xy: FloatArray, slopes: Slopes | None) -> None:
-    held = membership(layer, xy, slopes=slopes)
+def _composite_layer(result: FloatArray, held: Membership) -> None:
     depths = np.diff(held.offsets)
     active = np.flatnonzero(depths > 0)
     level = 0
@@ -162,10 +176,12 @@ def render_overlay(
     samples: int = 16,
     seed: int = 0,
     surface: Surface | None = None,
+    nearest: bool = False,
 ) -> Overlay:
     """The filtered overlay of a crop (x0, y0, x1, y1) of a picture of `size`, all in pixels.
 
     surface: of `sample_surface` with the same arguments, to save the rays when layers change.
+    nearest: see `membership`.
     """
     x0, y0, x1, y1 = crop or (0, 0, *size)
     if x1 <= x0 or y1 <= y0:
@@ -184,12 +200,17 @@ def render_overlay(
             assert caster is not None
             seen = caster.cast(points.reshape(-1, 2)).reshape(*points.shape[:4])
         gradients = caster.cast(pixel_centres(band)).gradient if caster is not None and planes else None
-        bands.append(_filter_band(scene, view, points, seen, gradients))
+        bands.append(_filter_band(scene, view, points, seen, gradients, nearest))
     return Overlay(*(np.concatenate(parts) for parts in zip(*bands, strict=True)))
 
 
 def _filter_band(
-    scene: SceneLike, view: Viewpoint, points: FloatArray, seen: Surface, gradients: FloatArray | None
+    scene: SceneLike,
+    view: Viewpoint,
+    points: FloatArray,
+    seen: Surface,
+    gradients: FloatArray | None,
+    nearest: bool,
 ) -> tuple[FloatArray, BoolArray, FloatArray, BoolArray]:
     """The members of an Overlay for sub-positions (h, w, s, s, 2) and what they see.
 
@@ -202,8 +223,8 @@ def _filter_band(
         gradients = np.repeat(gradients, samples * samples, axis=0)
         # Where the centre sees sky, each place has its own.
         gradients = np.where(np.isnan(gradients), seen.gradient.reshape(-1, 2), gradients)
-        slopes = Slopes(gradients, view.forward)
-    colors = composite(scene, seen.world[..., :2].reshape(-1, 2), slopes)
+        slopes = _slopes(scene, view, seen.world.reshape(-1, 3), gradients)
+    colors = composite(scene, seen.world[..., :2].reshape(-1, 2), slopes, nearest)
     colors = colors.reshape(height, width, samples * samples, 4)
     varied = (colors != colors[:, :, :1]).any(axis=(2, 3))
     terrain = hit.mean(axis=(2, 3))

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from .contract import BoolArray, FeaturesLike, FloatArray, IntArray, PatternLike, StrokeLike, StyleLike
+    from .screen import ScreenPlanes
 
 # How a bar ends.
 FLAT, ROUNDED, LENGTHENED = 0, 1, 2
@@ -33,13 +34,19 @@ DISC, MITER, BEVEL, SQUARE = 0, 1, 2, 3
 
 @dataclass(frozen=True)
 class Slopes:
-    """What slope correction needs: gradients (n, 2) of the ground at points, the camera's unit view direction (3,)."""
+    """What slope correction and widths on the screen need.
+
+    gradient: (n, 2) of the ground at points. forward: the camera's unit view direction (3,). planes: of the points, on
+    the screen; None where no stroke's width follows the view.
+    """
 
     gradient: FloatArray
     forward: FloatArray
+    planes: ScreenPlanes | None = None
 
     def __getitem__(self, which: IntArray) -> Slopes:
-        return Slopes(self.gradient[which], self.forward)
+        planes = None if self.planes is None else self.planes[which]
+        return Slopes(self.gradient[which], self.forward, planes)
 
 
 class Touch(NamedTuple):

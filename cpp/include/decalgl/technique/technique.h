@@ -13,6 +13,7 @@
 // the context.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -84,6 +85,13 @@ struct SeenPoint {
     double gradient_x = 0.0;  // metres of height a metre on the map
     double gradient_y = 0.0;
     double forward_z = -1.0;  // of the camera's unit view direction
+    // An offset (x, y) on the map, dropped onto that plane, lies (x * east + y * north) / (1 + x * lean_x + y * lean_y)
+    // pixels from the place on the screen.
+    std::array<double, 2> east{};
+    std::array<double, 2> north{};
+    double lean_x = 0.0;
+    double lean_y = 0.0;
+    double pixels_per_metre = 1.0;  // seen head-on
 };
 
 class Prepared {
@@ -110,6 +118,9 @@ public:
     // Error(style), Error(memory).
     virtual std::shared_ptr<const Prepared> edited(const LayerEdit& edit,
                                                    const MemoryAccount& memory) const = 0;
+    // With other choices, as far as they need no preparing: the rest of them is not looked at. Null where the technique
+    // has none.
+    virtual std::shared_ptr<const Prepared> tuned(const TechniqueOptions&) const { return nullptr; }
 };
 
 // What a pixel shows of the picture.
@@ -186,6 +197,8 @@ public:
     virtual UpdateReport update(const View& view) = 0;
     // Whether `draw` needs a depth attachment for itself, with whatever values.
     virtual bool needs_depth(const View&) const { return false; }
+    // Whether `draw` and `draw_ids` need a depth attachment with a stencil.
+    virtual bool needs_stencil(const View&) const { return false; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture: all of it,
     // or over what view.has_below says is there.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;

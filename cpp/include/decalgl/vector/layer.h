@@ -35,6 +35,14 @@ struct TechniqueChoice {
     }
 };
 
+// Polygons cut into triangles, for techniques that draw meshes. Those of feature f are first_of[f] .. first_of[f + 1];
+// six coordinates each, in the scene's coordinate system, either way round. They cover what the even-odd rule says,
+// and nothing twice.
+struct Triangles {
+    std::vector<double> coordinates;
+    std::vector<int64_t> first_of;  // empty: there are none
+};
+
 struct Layer {
     std::string name;
     TechniqueChoice technique;
@@ -44,6 +52,7 @@ struct Layer {
     Stroke casing;  // of lines: under the strokes of all features
     OutlineMode outline_mode = OutlineMode::normal;
     OutlineOrder outline_order = OutlineOrder::layer;
+    Triangles triangles;  // of polygons, where a technique asks for them
     // Features from bottom to top; empty: as they stand.
     std::vector<int64_t> draw_order;
 

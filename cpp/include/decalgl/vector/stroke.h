@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ enum class Cap : uint8_t { round, butt, square };
 // How wide a stroke is on a slope: as wide as on the map plane; by Thöny 2018, section 3.3; or as wide on the
 // slope itself.
 enum class SlopeCorrection : uint8_t { none, thoeny, tangent };
+
+// Of widths: lengths on the ground, or on the screen.
+enum class WidthUnits : uint8_t { metres, pixels };
 
 struct PatternMark {
     double begin = 0.0;  // metres from the period's beginning
@@ -61,15 +65,31 @@ inline bool operator!=(const StrokeStyle& a, const StrokeStyle& b) {
     return !(a == b);
 }
 
+// What a width is kept between, at every depth: pixels, and metres as they are seen head-on.
+struct WidthLimits {
+    double least_px = 0.0;
+    double most_px = std::numeric_limits<double>::infinity();
+    double least_metres = 0.0;
+    double most_metres = std::numeric_limits<double>::infinity();
+
+    bool any() const;
+};
+
+bool operator==(const WidthLimits& a, const WidthLimits& b);
+
 // The strokes of a layer's features.
 struct Stroke {
     std::vector<uint8_t> colors;  // R, G, B, A, sRGB, straight alpha: one, one a feature, or none: no strokes
-    std::vector<double> widths;   // metres on the map plane: one, or one a feature; 0: no stroke
+    std::vector<double> widths;   // in `units`: one, or one a feature; 0: no stroke
+    WidthUnits units = WidthUnits::metres;
+    WidthLimits limits;
     std::vector<StrokeStyle> styles = {StrokeStyle{}};
     std::vector<uint32_t> style_of;  // each feature's place in `styles`; empty: the first for all
-    double widest = 0.0;             // metres that a stroke may be widened to without preparing anew
+    double widest = 0.0;             // what a stroke may be widened to without preparing anew
 
     bool empty() const { return colors.empty(); }
+    // Whether its width follows the view: by its units, or by limits.
+    bool follows_view() const { return units == WidthUnits::pixels || limits.any(); }
     const uint8_t* color(size_t feature) const { return &colors[colors.size() == 4 ? 0 : 4 * feature]; }
     double width(size_t feature) const { return widths[widths.size() == 1 ? 0 : feature]; }
     size_t style(size_t feature) const { return style_of.empty() ? 0 : style_of[feature]; }

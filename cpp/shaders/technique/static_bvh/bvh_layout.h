@@ -69,4 +69,7 @@
 #define LOOK_BANDS_SHIFT 16
 #define LOOK_COUNT_MASK 255u
 
+// In a pixel that a border passes through (sample_place.glsl).
+#define BORDER_SAMPLES 48
+
 #endif

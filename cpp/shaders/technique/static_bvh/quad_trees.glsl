@@ -27,16 +27,21 @@ bool leaf_holds(uvec2 link, ivec2 point) {
     return inside;
 }
 
-bool ring_holds(uint node, ivec2 point) {
-    if (!holds(texelFetch(bvh_quads, int(node)), point)) return false;
+// The leaf below a node, whose box holds the point, in which it lies.
+uint leaf_at(uint node, ivec2 point) {
     uvec2 link = texelFetch(bvh_quad_links, int(node)).rg;
     while ((link.x & QUAD_KIND_MASK) == QUAD_INTERNAL) {
         // The first child ends where the others begin.
         ivec2 low = texelFetch(bvh_quads, int(link.y)).zw;
-        uint child = link.y + (point.x > low.x ? 1u : 0u) + (point.y > low.y ? 2u : 0u);
-        link = texelFetch(bvh_quad_links, int(child)).rg;
+        node = link.y + (point.x > low.x ? 1u : 0u) + (point.y > low.y ? 2u : 0u);
+        link = texelFetch(bvh_quad_links, int(node)).rg;
     }
-    return leaf_holds(link, point);
+    return node;
+}
+
+bool ring_holds(uint node, ivec2 point) {
+    if (!holds(texelFetch(bvh_quads, int(node)), point)) return false;
+    return leaf_holds(texelFetch(bvh_quad_links, int(leaf_at(node, point))).rg, point);
 }
 
 bool exterior_holds(uvec4 exterior, ivec2 point) {
@@ -54,15 +59,28 @@ uint turned(uvec2 step, uint count) {
     return step.x * count + high;
 }
 
+// One set of a hatch's lines: what a quantum to the right and one upwards add to the phase, that of a point between the
+// middles of two lines, from 0 on one to half a turn, and how far lines go.
+struct HatchLines {
+    uvec4 steps;
+    uint phase;
+    uint reach;
+};
+
+HatchLines hatch_lines(int look, int set, ivec2 point) {
+    uvec4 steps = texelFetch(bvh_looks, look + 1 + 2 * set);
+    uvec2 phases = texelFetch(bvh_looks, look + 2 + 2 * set).rg;
+    uint phase = phases.x + turned(steps.xy, uint(point.x)) + turned(steps.zw, uint(point.y));
+    return HatchLines(steps, min(phase, ~phase + 1u), phases.y);
+}
+
 // Whether the lines of a fill's hatch, if it has one, take in a point.
 bool hatch_holds(int look, ivec2 point) {
     int sets = int(texelFetch(bvh_looks, look).r);
     bool inside = sets == 0;
     for (int i = 0; i < sets; ++i) {
-        uvec4 steps = texelFetch(bvh_looks, look + 1 + 2 * i);
-        uvec2 phases = texelFetch(bvh_looks, look + 2 + 2 * i).rg;
-        uint phase = phases.x + turned(steps.xy, uint(point.x)) + turned(steps.zw, uint(point.y));
-        inside = inside || min(phase, ~phase + 1u) <= phases.y;
+        HatchLines lines = hatch_lines(look, i, point);
+        inside = inside || lines.phase <= lines.reach;
     }
     return inside;
 }

@@ -10,7 +10,8 @@
 // HATCHES        some fills are of parallel lines
 // UNSORTED       segments lie along a Hilbert curve: the walk goes on to the end
 // NEAREST        the nearest line that covers the point is the only one seen
-// SAMPLE         one of the 32 points of the pixel's area, else its centre
+// BORDERS        writes how the nearest border in the pixel runs, nothing where there is none; nearer ones are deeper
+// SAMPLES        the mean of some of the points of the pixel's area that follow that border, else its centre
 // THOENY         lines by how much of the pixel they cover
 // IDS            writes 1 + slot of the topmost feature at the centre, nothing where there is none
 
@@ -29,7 +30,7 @@
 #elif !defined(CORNERS) && (defined(PATTERNS) || defined(BANDS) || defined(SLOPES))
 #define CORNERS
 #endif
-#if defined(THOENY) && (defined(BOTH) || defined(IDS) || defined(SAMPLE))
+#if defined(THOENY) && (defined(BOTH) || defined(IDS) || defined(SAMPLES))
 #undef THOENY
 #endif
 #if defined(BOTH)
@@ -38,7 +39,13 @@
 #undef NEAREST
 #endif
 #if defined(IDS)
-#undef SAMPLE
+#undef BORDERS
+#endif
+#if defined(BORDERS)
+#undef THOENY
+#endif
+#if defined(IDS) || defined(BORDERS)
+#undef SAMPLES
 #endif
 #include "shared/ray.glsl"
 #include "technique/static_bvh/tree.glsl"
@@ -57,17 +64,23 @@
 
 uniform usampler2D position_texture;
 uniform int first_row;  // of the strip that is drawn
-#if defined(SAMPLE) || defined(SLOPES) || defined(THOENY)
+#if defined(SAMPLES) || defined(SLOPES) || defined(THOENY) || defined(BORDERS)
 uniform sampler2D surface_texture;
 #endif
-#ifdef SAMPLE
-#include "shared/sample_offsets.glsl"
-uniform int sample_index;
+#ifdef SAMPLES
+#include "technique/static_bvh/sample_place.glsl"
+uniform sampler2D border_texture;
+uniform ivec2 sample_range;  // the first and the one after the last
 #endif
 #ifdef BOTH
 uniform usamplerBuffer bvh_objects;
 #endif
-#ifdef THOENY
+#if defined(BORDERS) || defined(THOENY)
+#include "technique/static_bvh/search.glsl"
+#endif
+#if defined(BORDERS)
+#include "technique/static_bvh/find_borders.glsl"
+#elif defined(THOENY)
 #include "technique/static_bvh/thoeny_walk.glsl"
 #else
 #include "technique/static_bvh/walk.glsl"
@@ -76,6 +89,8 @@ uniform usamplerBuffer bvh_objects;
 #ifdef IDS
 uniform uint first_slot;
 layout(location = 0) out uint id;
+#elif defined(BORDERS)
+layout(location = 0) out vec2 border;
 #else
 layout(location = 0) out vec4 color;
 #endif
@@ -84,23 +99,34 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) + ivec2(0, first_row);
     Position position = unpack_position(texelFetch(position_texture, pixel, 0));
     if (is_sky(position)) discard;
-#if defined(SAMPLE) || defined(SLOPES) || defined(THOENY)
+#if defined(SAMPLES) || defined(SLOPES) || defined(THOENY) || defined(BORDERS)
     vec4 surface = texelFetch(surface_texture, pixel, 0);
 #endif
 #ifdef SLOPES
     gradient = surface.xy;
 #endif
-#if defined(SAMPLE) || defined(THOENY)
+#if defined(SAMPLES) || defined(THOENY) || defined(BORDERS)
     mat2 foot = footprint(pixel_from_centre() + vec2(0.0, first_row), surface.xy, surface.z);
 #endif
-#if defined(THOENY)
+#if defined(BORDERS)
+    Borders borders = find_borders(lattice_point(position, vec2(0.0)), quanta_per_metre * foot);
+    if (borders.ratio > 1.0) discard;
+    border = borders.growth;
+    gl_FragDepth = 1.0 - 0.99 * borders.ratio;
+#elif defined(THOENY)
     color = lines_at(lattice_point(position, vec2(0.0)), quanta_per_metre * foot);
 #elif defined(IDS)
     Found found = walk(lattice_point(position, vec2(0.0)));
     if (found.seen == no_slot) discard;
     id = first_slot + found.seen + 1u;
-#elif defined(SAMPLE)
-    color = walk(lattice_point(position, foot * sample_offsets[sample_index])).sum;
+#elif defined(SAMPLES)
+    vec2 growth = texelFetch(border_texture, pixel - ivec2(0, first_row), 0).rg;
+    color = vec4(0.0);
+    int i = sample_range.x;
+    do {
+        color += walk(lattice_point(position, foot * sample_place(growth, i))).sum;
+    } while (++i < sample_range.y);
+    color /= float(sample_range.y - sample_range.x);
 #else
     color = walk(lattice_point(position, vec2(0.0))).sum;
 #endif

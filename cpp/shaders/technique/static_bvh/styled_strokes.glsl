@@ -41,6 +41,7 @@ struct Run {
     bool is_dot;
     vec2 phases;  // of the start and the end, quanta
     float along;  // from the start to the foot of the point, measured on the map
+    float stretch;  // of lengths along the segment, by its slope
 };
 
 vec2 direction_of(mat2 lengths, ivec2 way) {
@@ -75,6 +76,7 @@ Run run_to(uvec2 segment, ivec2 point, mat2 lengths) {
 #ifdef PATTERNS
     run.phases = vec2(uintBitsToFloat(texelFetch(bvh_owners, start).g), uintBitsToFloat(texelFetch(bvh_owners, end).g));
     run.along = dot(run.from_start, run.direction) / stretch;
+    run.stretch = stretch;
 #endif
     return run;
 }

@@ -4,9 +4,9 @@
 // lie on. A pixel looks into all cells that it reaches into, up to four thousand around its centre's. With NEAREST
 // only the nearest line shows; else those that cover any of the pixel are laid over each other, of more than eight
 // the topmost.
+#include "technique/static_bvh/search.glsl"
+
 const uint no_line = 0xFFFFFFFFu;
-const int far_cells = 32;      // beyond the centre's cell, on each side
-const int spare_cells = 2048;  // the same where the other side needs but one cell
 #ifdef NEAREST
 const int most_lines = 1;
 #else
@@ -47,50 +47,14 @@ void keep(inout Lines lines, Candidate line) {
 #endif
 }
 
-// The cells that the pixel reaches into, row by row, and in each the leaves of its tree.
-struct Search {
-    ivec2 low, high;
-    ivec2 place;
-    Tree tree;
-    uint node;  // 0 where the cell has no more
-    ivec4 box;  // of the pixel
-};
-
-void enter(inout Search search) {
-    search.tree = tree_in(search.place);
-    search.node = search.tree.objects > 0u ? 1u : 0u;
-}
-
-// The next object whose box meets the pixel's, -1 where the cell has no more.
-int next_in_cell(inout Search search) {
-    Tree tree = search.tree;
-    uint node = search.node;
-    int object = -1;
-    do {
-        ivec4 box = texelFetch(bvh_nodes, tree.first_node + max(int(node) - 1, 0));
-        bool meets = node != 0u && all(greaterThanEqual(search.box.zw, box.xy)) && all(lessThanEqual(search.box.xy, box.zw));
-        bool is_leaf = node >= tree.first_leaf;
-        if (meets && is_leaf) object = tree.first_object + int(node - tree.first_leaf);
-        node = meets && !is_leaf ? 2u * node : next_right(node);
-        if (node >= tree.first_leaf + tree.objects) node = 0u;
-    } while (object < 0 && node != 0u);
-    search.node = node;
-    return object;
-}
-
-// The same through all cells. Trees are searched apart from what their objects cover, as a branch not taken costs as much
-// in software.
+// The next object of all cells, -1 after the last. Trees are searched apart from what their objects cover, as a branch not
+// taken costs as much in software.
 int next_object(inout Search search) {
     int object = -1;
     bool ended = false;
     do {
         object = next_in_cell(search);
-        if (object < 0) {
-            bool row_ends = search.place.x >= search.high.x;
-            search.place = row_ends ? ivec2(search.low.x, search.place.y + 1) : search.place + ivec2(1, 0);
-            ended = search.place.y > search.high.y;
-            if (!ended) enter(search);
-        }
+        if (object < 0) ended = !next_cell(search);
     } while (object < 0 && !ended);
     return object;
 }
@@ -103,19 +67,7 @@ vec4 lines_at(ivec2 point, mat2 foot) {
         lines.colors[i] = vec4(0.0);
     }
     lines.distance2 = 1e38;
-    ivec2 half_pixel = ivec2(min(ceil(0.5 * (abs(foot[0]) + abs(foot[1]))), vec2(5e8)));
-    ivec2 last = grid_size - 1;
-    ivec2 centre = clamp((point - grid_box.xy) / cell_size, ivec2(0), last);
-    Search search;
-    search.box = ivec4(point - half_pixel, point + half_pixel);
-    search.low = clamp((search.box.xy - grid_box.xy) / cell_size, ivec2(0), last);
-    search.high = clamp((search.box.zw - grid_box.xy) / cell_size, ivec2(0), last);
-    // The cells of a level line are much lower than wide.
-    ivec2 most = max(ivec2(far_cells), spare_cells / (search.high - search.low + 1).yx);
-    search.low = max(search.low, centre - most);
-    search.high = min(search.high, centre + most);
-    search.place = search.low;
-    enter(search);
+    Search search = search_around(point, half_pixel(foot));
     int object = -1;
     do {
         object = next_object(search);

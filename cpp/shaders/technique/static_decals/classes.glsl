@@ -12,10 +12,10 @@ struct Classed {
 
 // Composes what ends, and says whether the pixel is still alike all over.
 bool add_alike(inout vec4 sum, inout bool open, Group group) {
-    bool covered = group.covered != 0u && open;
+    bool covered = !is_empty(group.covered) && open;
 #ifdef STYLES
     if (group.clip) {
-        open = group.covered != 0u;
+        open = !is_empty(group.covered);
         return true;
     }
     open = true;
@@ -44,14 +44,14 @@ Classed classed_cell(Cell cell, vec2 local, mat2 foot) {
             alike = add_alike(sum, open, group);
 #ifndef PARTS
             // A point without an edge is a disc.
-            alike = alike && group.beyond == 0u;
+            alike = alike && is_empty(group.beyond);
 #endif
             group = group_of(word, bias, local, foot);
             ended = word == LIST_END || sum.a >= 0.999;
         } else {
             uint mask = read_point(group, word);
             alike = mask != for_each;
-            if (alike) group.covered = is_stroke(group) ? group.covered | mask : group.covered ^ mask;
+            if (alike) group.covered = is_stroke(group) ? group.covered | uvec2(mask) : group.covered ^ uvec2(mask);
         }
     } while (alike && !ended);
     return Classed(alike ? CLASS_DONE : CLASS_CELLS, sum);

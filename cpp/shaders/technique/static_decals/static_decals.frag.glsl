@@ -1,4 +1,4 @@
-// Static decals, seen through one point a pixel or through 32 samples of its area.
+// Static decals, seen through one point a pixel or through 64 samples of its area.
 //
 // LINES, RINGS   the kinds of feature there are
 // ONE_WIDTH      all lines are of one width: no need to look theirs up

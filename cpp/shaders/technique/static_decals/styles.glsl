@@ -137,35 +137,59 @@ float stroke_share(Style style, Pen pen, vec2 from, vec2 to, float run) {
     return plain_share(style, from, to);
 }
 
-// The colour at a share of the half width, where the decal's own is `straight`.
+#ifdef BANDS
+int band_record(Style style) {
+    return style.record + 1 + mark_count(style);
+}
+
+// The colour of a band, where the decal's own is `straight`.
+vec4 color_of_band(Style style, vec4 straight, int band) {
+    vec4 color = unpackUnorm4x8(texelFetch(style_records, band_record(style) + band).y);
+    return vec4(color.rgb, color.a * straight.a);
+}
+#endif
+
+// The colour at a share of the half width.
 vec4 band_color(Style style, vec4 straight, float share) {
 #ifdef BANDS
-    int first = style.record + 1 + mark_count(style);
-    int last = first + int(style.counts >> BANDS_SHIFT) - 1;
-    int i = first;
+    int last = int(style.counts >> BANDS_SHIFT) - 1;
+    int i = 0;
     if (has(style, STYLE_BANDS)) {
-        while (i < last && share > uintBitsToFloat(texelFetch(style_records, i).x)) ++i;
-        vec4 color = unpackUnorm4x8(texelFetch(style_records, i).y);
-        return vec4(color.rgb, color.a * straight.a);
+        while (i < last && share > uintBitsToFloat(texelFetch(style_records, band_record(style) + i).x)) ++i;
+        return color_of_band(style, straight, i);
     }
 #endif
     return straight;
 }
 
+#ifdef HATCHES
+// Half the lines' width, in spacings: the same place in the record as a stroke's miter limit.
+float hatch_reach(Style style) {
+    return style.miter_turn;
+}
+
+int hatch_sets(Style style) {
+    return int(texelFetch(style_records, style.record).z);
+}
+
+// How many spacings a place, in quanta from its bucket's corner, lies from a line of a set; in x and y, how many a quantum.
+vec3 spacings_of(Style style, int set, ivec2 bucket, vec2 inside) {
+    vec4 steps = record_texel(style.record + 1 + 2 * set);
+    vec2 leaps = record_texel(style.record + 2 + 2 * set).xy;
+    return vec3(steps.xy, dot(inside, steps.xy) + steps.z + fract(dot(vec2(bucket), leaps)));
+}
+#endif
+
 // Whether a fill shows at a place, in quanta from its bucket's corner.
 bool fill_shows(Style style, ivec2 bucket, vec2 inside) {
 #ifdef HATCHES
     if (!has(style, STYLE_HATCH)) return true;
-    float reach = style.miter_turn;  // the same place in the record: half the lines' width, in spacings
-    uint sets = uint(texelFetch(style_records, style.record).z);
     bool shows = false;
-    uint i = 0u;
+    int i = 0;
     do {
-        vec4 steps = record_texel(style.record + 1 + 2 * int(i));
-        vec2 leaps = record_texel(style.record + 2 + 2 * int(i)).xy;
-        float spacings = dot(inside, steps.xy) + steps.z + fract(dot(vec2(bucket), leaps));
-        shows = shows || abs(spacings - round(spacings)) <= reach;
-    } while (++i < sets);
+        float spacings = spacings_of(style, i, bucket, inside).z;
+        shows = shows || abs(spacings - round(spacings)) <= hatch_reach(style);
+    } while (++i < hatch_sets(style));
     return shows;
 #else
     return true;

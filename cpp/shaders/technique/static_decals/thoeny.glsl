@@ -12,10 +12,10 @@ const int most_decals = 8;
 struct Layers {
     uint slots[most_decals];
     vec4 colors[most_decals];  // of strokes: premultiplied, by their coverage
-    uint masks[most_decals];   // samples, of fills and of cells that a stroke covers
+    uvec2 masks[most_decals];   // samples, of fills and of cells that a stroke covers
 };
 
-void keep(inout Layers layers, uint slot, vec4 color, uint mask) {
+void keep(inout Layers layers, uint slot, vec4 color, uvec2 mask) {
     int at = most_decals;
     for (int i = most_decals - 1; i >= 0; --i)
         if (slot <= layers.slots[i]) at = i;
@@ -102,32 +102,32 @@ vec4 covered_color(Style style, uint slot, Nearest part, mat2 foot) {
     return sum;
 }
 
-void end_group(inout Layers layers, inout uint open, Group group, Nearest part, Cell cell, vec2 local, mat2 foot,
-               uint inside) {
+void end_group(inout Layers layers, inout uvec2 open, Group group, Nearest part, Cell cell, vec2 local, mat2 foot,
+               uvec2 inside) {
     if (group.slot == SLOT_MASK) return;
     if (group.clip) {
         open = group.covered;
         return;
     }
-    float seen = float(bitCount(open & inside)) / max(float(bitCount(inside)), 1.0);
+    float seen = float(count_of(open & inside)) / max(float(count_of(inside)), 1.0);
     if (open == all_samples) seen = 1.0;
     if (group.line) {
-        uint mask = group.covered & inside & open;
+        uvec2 mask = group.covered & inside & open;
         vec4 color = seen * covered_color(group.style, group.slot, part, group.foot);
-        if (color.a > 0.0 || mask != 0u) keep(layers, group.slot, color, mask);
+        if (color.a > 0.0 || !is_empty(mask)) keep(layers, group.slot, color, mask);
     } else {
-        uint mask = group.covered & inside & shown_samples(group, cell, local, foot);
-        if (mask != 0u) keep(layers, group.slot, vec4(0.0), mask);
+        uvec2 mask = shown_samples(group, cell, local, foot, group.covered & inside);
+        if (!is_empty(mask)) keep(layers, group.slot, vec4(0.0), mask);
     }
     open = all_samples;
 }
 
-void look_into(inout Layers layers, Cell cell, vec2 local, mat2 foot, uint inside) {
+void look_into(inout Layers layers, Cell cell, vec2 local, mat2 foot, uvec2 inside) {
     float bias = bias_of(cell.bits);
     int at = 4 * int(cell.entry >> COUNT_BITS);
     uint count = cell.entry & COUNT_ESCAPE;
     int end = count == COUNT_ESCAPE ? 0x7FFFFFFF : at + 4 * int(count);
-    uint open = all_samples;
+    uvec2 open = all_samples;
     Group group = group_of(SLOT_MASK, bias, local, foot);
     Nearest part = Nearest(out_of_reach, vec2(1.0, 0.0), 0.0);
     bool ended = false;
@@ -143,7 +143,7 @@ void look_into(inout Layers layers, Cell cell, vec2 local, mat2 foot, uint insid
             bool phase = group.pen.awaits_phase;
             bool dot_of_joined = starts_edge(word) && has(group.style, STYLE_JOINED);
             uint alike = read_point(group, word);
-            if (!group.line) group.covered ^= alike == for_each ? crossing_mask(crossing_of(group, group.before, group.from)) : alike;
+            if (!group.line) group.covered ^= alike == for_each ? crossing_mask(crossing_of(group, group.before, group.from)) : uvec2(alike);
             else if (!phase && !dot_of_joined) part = nearer(part, group);
         }
     } while (!ended);
@@ -154,7 +154,7 @@ vec4 composite_thoeny(LatticePosition centre, mat2 foot) {
     for (int i = 0; i < most_decals; ++i) {
         layers.slots[i] = no_slot;
         layers.colors[i] = vec4(0.0);
-        layers.masks[i] = 0u;
+        layers.masks[i] = no_samples;
     }
     vec2 reach = 0.5 * (abs(foot[0]) + abs(foot[1]));
     ivec2 low = centre.quantum + ivec2(floor(centre.fraction - reach));
@@ -172,8 +172,8 @@ vec4 composite_thoeny(LatticePosition centre, mat2 foot) {
     vec4 sum = vec4(0.0);
     for (int i = 0; i < most_decals; ++i) {
         vec4 color = layers.colors[i];
-        vec4 straight = layers.masks[i] == 0u ? vec4(0.0) : color_of(layers.slots[i]);
-        float sampled = straight.a * float(bitCount(layers.masks[i])) / float(sample_count);
+        vec4 straight = is_empty(layers.masks[i]) ? vec4(0.0) : color_of(layers.slots[i]);
+        float sampled = straight.a * float(count_of(layers.masks[i])) / float(sample_count);
         sum += (1.0 - sum.a) * (sampled > color.a ? sampled * vec4(straight.rgb, 1.0) : color);
     }
     return sum;

@@ -109,6 +109,7 @@ StrokeLook stroke_look(const DecalGroup& group, uint32_t place) {
     const uint32_t marks = kinds >> LOOK_MARKS_SHIFT & LOOK_COUNT_MASK;
     return {static_cast<Corner>(kinds >> LOOK_CORNER_SHIFT & LOOK_KIND_MASK),
             static_cast<Cap>(kinds >> LOOK_CAP_SHIFT & LOOK_KIND_MASK),
+            static_cast<SlopeCorrection>(kinds >> LOOK_SLOPE_SHIFT & LOOK_KIND_MASK),
             as_float((*look)[1]),
             as_float((*look)[2]),
             look + 1,

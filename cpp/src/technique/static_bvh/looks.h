@@ -30,6 +30,7 @@ private:
 struct StrokeLook {
     Corner corner;
     Cap cap;
+    SlopeCorrection slope;
     float limit;   // the cosine of the miter limit
     float period;  // quanta; 0: no pattern
     const LookTexel* marks;

@@ -135,7 +135,6 @@ class PreparedBvh : public Prepared {
 public:
     PreparedCounts counts() const override;
     FeatureReference feature(uint32_t id) const override { return slots[id]; }
-    // Strokes with a slope correction are as wide as on level ground.
     std::vector<FeatureReference> query(const SeenPoint& point) const override;
     // Throws Error(unsupported): the structures are there to be compared with.
     void save(ArchiveWriter& archive, const std::string& prefix) const override;

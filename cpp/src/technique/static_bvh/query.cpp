@@ -29,7 +29,7 @@ bool fill_holds(const DecalGroup& group, const Exterior& exterior, LatticePoint 
     return holds(group, exterior, point) && hatch_holds(group, group.styles[exterior.slot].look, point);
 }
 
-std::vector<Cover> covers_of(const DecalGroup& group, LatticePoint point) {
+std::vector<Cover> covers_of(const DecalGroup& group, LatticePoint point, const Slope& slope) {
     std::vector<Cover> covers;
     const CellStart start = group.cells[group.grid.cell_at(point)];
     const uint32_t objects = group.objects_in(group.grid.cell_at(point));
@@ -42,7 +42,7 @@ std::vector<Cover> covers_of(const DecalGroup& group, LatticePoint point) {
                 covers.push_back({exterior.slot, 0.0});
             return true;
         }
-        const double share = stroke_share(group, object.segment(), point);
+        const double share = stroke_share(group, object.segment(), point, slope);
         if (share <= 1.0 && on_its_side(group, object, point))
             covers.push_back({group.slot_of(object), share});
         return true;
@@ -50,11 +50,11 @@ std::vector<Cover> covers_of(const DecalGroup& group, LatticePoint point) {
     return covers;
 }
 
-std::vector<uint32_t> slots_at(const DecalGroup& group, LatticePoint point) {
+std::vector<uint32_t> slots_at(const DecalGroup& group, LatticePoint point, const Slope& slope) {
     std::vector<uint32_t> found;
     if (!group.grid.box.holds(point))
         return found;
-    std::vector<Cover> covers = covers_of(group, point);
+    std::vector<Cover> covers = covers_of(group, point, slope);
     // Strokes come segment by segment, along a curve even out of order.
     std::sort(covers.begin(), covers.end(),
               [](Cover a, Cover b) { return a.slot != b.slot ? a.slot < b.slot : a.share < b.share; });
@@ -75,9 +75,10 @@ std::vector<FeatureReference> PreparedBvh::query(const SeenPoint& point) const {
     if (!(std::abs(lattice_x) <= lattice_extent && std::abs(lattice_y) <= lattice_extent))
         return found;
     const LatticePoint nearest = lattice.nearest(point.x, point.y);
+    const Slope slope({point.gradient_x, point.gradient_y}, point.forward_z);
     std::unordered_set<uint64_t> seen;
     for (size_t group = groups.size(); group-- > 0;)
-        for (const uint32_t slot : slots_at(groups[group], nearest)) {
+        for (const uint32_t slot : slots_at(groups[group], nearest, slope)) {
             // A feature may show more than one of its decals.
             const FeatureReference feature = slots[groups[group].first_slot + slot];
             if (seen.insert(uint64_t{feature.layer} << 32 | feature.feature).second)

@@ -13,8 +13,8 @@ namespace {
 
 using bvh::GroupKind;
 
-constexpr int sample_count = 32;  // shared/sample_offsets.glsl
-constexpr int no_sample = -1;
+// Less than the depth of any pixel with a border (static_bvh.frag.glsl), and more than that of those without.
+constexpr double between_depth = 0.005;
 // Samples are drawn in strips of the picture, so that all that is kept of a strip is no more than this many pixels.
 constexpr int pixels_at_once = 1 << 20;
 
@@ -122,14 +122,14 @@ void StaticBvh::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLi
     if (view.antialias == Antialias::coverage && in_samples)
         draw_samples(view, gbuffer, programs);
     else
-        draw_groups(0, buffers_.size(), {}, {0, no_sample}, view, gbuffer, programs);
+        draw_groups(0, buffers_.size(), {}, {}, view, gbuffer, programs);
     glDisable(GL_BLEND);
 }
 
 void StaticBvh::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const GLuint nothing[] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    draw_groups(0, buffers_.size(), {"IDS"}, {0, no_sample}, view, gbuffer, programs);
+    draw_groups(0, buffers_.size(), {"IDS"}, {}, view, gbuffer, programs);
 }
 
 // Neighbouring groups that are drawn in the same way: by coverage, or in samples.
@@ -139,10 +139,13 @@ struct StaticBvh::Run {
     Canvas canvas;  // by coverage: their picture, which all samples share
 };
 
-StaticBvh::Canvas StaticBvh::canvas(int width, int height) const {
+StaticBvh::Canvas StaticBvh::canvas(GLenum format, int width, int height, const gl::Texture2D* depth) const {
     Canvas made;
-    made.picture = gl::Texture2D::create(memory_, "static_bvh: samples", GL_RGBA32F, width, height);
-    made.target = gl::Framebuffer::create("samples", {{GL_COLOR_ATTACHMENT0, &made.picture}});
+    made.picture = gl::Texture2D::create(memory_, "static_bvh: samples", format, width, height);
+    std::vector<gl::Attachment> attachments{{GL_COLOR_ATTACHMENT0, &made.picture}};
+    if (depth != nullptr)
+        attachments.push_back({GL_DEPTH_ATTACHMENT, depth});
+    made.target = gl::Framebuffer::create("samples", attachments);
     return made;
 }
 
@@ -157,59 +160,112 @@ std::vector<StaticBvh::Run> StaticBvh::runs_of(const View& view) const {
     return runs;
 }
 
-// All groups for one sample of every pixel, over each other; then the next. So the mean is that of the
-// composite, also where edges of several groups meet.
+void StaticBvh::lay(const Canvas& from, int first_row, float share, gl::ProgramLibrary& programs) const {
+    gl::Program& program = programs.get("static_bvh_mean");
+    program.use();
+    program.set("samples", 0);
+    from.picture.bind(0);
+    program.set("first_row", first_row);
+    program.set("share", share);
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+// The nearest border of all groups in each pixel, by the depth test, and how near it is, in the depth.
+void StaticBvh::find_borders(const Canvas& borders, const std::vector<Run>& runs, int row, const View& view,
+                             const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    glDepthRange(0.0, 1.0);
+    glDepthFunc(GL_GREATER);
+    borders.target.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
+    borders.target.clear_depth(0.0F);
+    borders.target.bind();
+    for (const Run& run : runs)
+        if (!run.by_coverage)
+            draw_groups(run.begin, run.end, {"BORDERS"}, {row}, view, gbuffer, programs);
+    glDepthMask(GL_FALSE);
+    glDepthRange(between_depth, between_depth);
+    glEnable(GL_BLEND);
+}
+
+void StaticBvh::draw_runs(const std::vector<Run>& runs, const gl::Flags& flags, Strip strip, const View& view,
+                          const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    for (const Run& run : runs) {
+        if (run.by_coverage)
+            lay(run.canvas, 0, 1.0F, programs);
+        else
+            draw_groups(run.begin, run.end, flags, strip, view, gbuffer, programs);
+    }
+}
+
+// All groups for one sample of each pixel, over each other; then the next. So the mean is that of the composite, also
+// where edges of several groups meet. A single group takes all its samples at once.
+void StaticBvh::add_samples(const Canvas& sum, const Canvas& sample, const std::vector<Run>& runs,
+                            Strip strip, const View& view, const GBufferView& gbuffer,
+                            gl::ProgramLibrary& programs) {
+    if (buffers_.size() == 1) {
+        strip.end_sample = BORDER_SAMPLES;
+        draw_runs(runs, {"SAMPLES"}, strip, view, gbuffer, programs);
+        return;
+    }
+    for (int i = 0; i < BORDER_SAMPLES; ++i) {
+        strip.first_sample = i;
+        strip.end_sample = i + 1;
+        sample.target.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
+        sample.target.bind();
+        draw_runs(runs, {"SAMPLES"}, strip, view, gbuffer, programs);
+        sum.target.bind();
+        glBlendFunc(GL_ONE, GL_ONE);
+        lay(sample, 0, 1.0F / BORDER_SAMPLES, programs);
+    }
+}
+
+// Pixels without a border are what their centre is, and the others the mean of their samples.
 void StaticBvh::draw_samples(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     GLint target = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
     const int width = gbuffer.position->width(), height = gbuffer.position->height();
     std::vector<Run> runs = runs_of(view);
     const auto kept = std::count_if(runs.begin(), runs.end(), [](const Run& run) { return run.by_coverage; });
-    const int rows = std::clamp(pixels_at_once / width / static_cast<int>(2 + kept), 1, height);
-    const Canvas sample = canvas(width, rows), sum = canvas(width, rows);
+    const int rows = std::clamp(pixels_at_once / width / static_cast<int>(3 + kept), 1, height);
+    const gl::Texture2D depth =
+        gl::Texture2D::create(memory_, "static_bvh: samples", GL_DEPTH_COMPONENT32F, width, rows);
+    const Canvas borders = canvas(GL_RG32F, width, rows, &depth);
+    const Canvas sample = canvas(GL_RGBA32F, width, rows, &depth);
+    const Canvas sum = canvas(GL_RGBA32F, width, rows, &depth);
     for (Run& run : runs)
         if (run.by_coverage)
-            run.canvas = canvas(width, rows);
-    const auto lay = [&](const Canvas& from, int first_row, float share) {
-        gl::Program& program = programs.get("static_bvh_mean");
-        program.use();
-        program.set("samples", 0);
-        from.picture.bind(0);
-        program.set("first_row", first_row);
-        program.set("share", share);
-        no_vertices_.bind();
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-    };
+            run.canvas = canvas(GL_RGBA32F, width, rows);
     const auto begin = [](const Canvas& canvas) {
         canvas.target.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
         canvas.target.bind();
-        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     };
     for (int row = 0; row < height; row += rows) {
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         for (const Run& run : runs) {
             if (!run.by_coverage)
                 continue;
             begin(run.canvas);
-            draw_groups(run.begin, run.end, {}, {row, no_sample}, view, gbuffer, programs);
+            draw_groups(run.begin, run.end, {}, {row}, view, gbuffer, programs);
         }
+        glEnable(GL_DEPTH_TEST);
+        find_borders(borders, runs, row, view, gbuffer, programs);
         begin(sum);
-        for (int i = 0; i < sample_count; ++i) {
-            begin(sample);
-            for (const Run& run : runs) {
-                if (run.by_coverage)
-                    lay(run.canvas, 0, 1.0F);
-                else
-                    draw_groups(run.begin, run.end, {"SAMPLE"}, {row, i}, view, gbuffer, programs);
-            }
-            sum.target.bind();
-            glBlendFunc(GL_ONE, GL_ONE);
-            lay(sample, 0, 1.0F / sample_count);
-        }
+        glDepthFunc(GL_GREATER);
+        draw_runs(runs, {}, {row}, view, gbuffer, programs);
+        glDepthFunc(GL_LESS);
+        add_samples(sum, sample, runs, {row, &borders.picture}, view, gbuffer, programs);
+        glDisable(GL_DEPTH_TEST);
         glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
         glViewport(0, row, width, std::min(rows, height - row));
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-        lay(sum, row, 1.0F);
+        lay(sum, row, 1.0F, programs);
     }
+    glDepthMask(GL_TRUE);
+    glDepthRange(0.0, 1.0);
+    glDepthFunc(GL_GREATER);
     glViewport(0, 0, width, height);
 }
 
@@ -255,14 +311,18 @@ void StaticBvh::draw_group(size_t index, gl::Flags flags, Strip strip, const Vie
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
-    if (flags.count("SAMPLE") + flags.count("THOENY") + flags.count("SLOPES") != 0) {
+    if (flags.count("SAMPLES") + flags.count("BORDERS") + flags.count("THOENY") + flags.count("SLOPES") !=
+        0) {
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
     }
     program.set("first_row", strip.first_row);
-    if (flags.count("SAMPLE") != 0)
-        program.set("sample_index", strip.sample);
     int unit = 2;
+    if (flags.count("SAMPLES") != 0) {
+        program.set("sample_range", glm::ivec2(strip.first_sample, strip.end_sample));
+        program.set("border_texture", unit);
+        strip.borders->bind(static_cast<GLuint>(unit++));
+    }
     for (const NamedBuffer& each : buffers_[index]) {
         program.set(each.name, unit);
         each.buffer.bind(static_cast<GLuint>(unit++));

@@ -30,10 +30,12 @@ private:
         gl::TextureBuffer buffer;
     };
 
-    // Rows of the picture, and which sample of its pixels.
+    // Rows of the picture, and which samples of its pixels, at places that follow these borders.
     struct Strip {
-        int first_row;
-        int sample;
+        int first_row = 0;
+        const gl::Texture2D* borders = nullptr;
+        int first_sample = 0;
+        int end_sample = 0;
     };
 
     // A picture to be drawn into and to be drawn.
@@ -44,8 +46,15 @@ private:
 
     struct Run;
 
-    Canvas canvas(int width, int height) const;
+    Canvas canvas(GLenum format, int width, int height, const gl::Texture2D* depth = nullptr) const;
     std::vector<Run> runs_of(const View& view) const;
+    void lay(const Canvas& from, int first_row, float share, gl::ProgramLibrary& programs) const;
+    void find_borders(const Canvas& borders, const std::vector<Run>& runs, int row, const View& view,
+                      const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void draw_runs(const std::vector<Run>& runs, const gl::Flags& flags, Strip strip, const View& view,
+                   const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void add_samples(const Canvas& sum, const Canvas& sample, const std::vector<Run>& runs, Strip strip,
+                     const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     void draw_samples(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     void draw_groups(size_t begin, size_t end, const gl::Flags& flags, Strip strip, const View& view,
                      const GBufferView& gbuffer, gl::ProgramLibrary& programs);

@@ -1,7 +1,5 @@
 #include "technique/static_bvh/stroke_cover.h"
 
-#include "vector/stroke_reach.h"
-
 namespace decalgl::bvh {
 namespace {
 
@@ -12,8 +10,7 @@ Vector2 way(LatticePoint from, LatticePoint to) {
     return {double(to.x) - from.x, double(to.y) - from.y};
 }
 
-Vector2 direction(LatticePoint from, LatticePoint to) {
-    const Vector2 v = way(from, to);
+Vector2 normalized(Vector2 v) {
     const double size = length(v);
     return size > 0.0 ? Vector2{v.x / size, v.y / size} : Vector2{};
 }
@@ -49,51 +46,59 @@ Run run_of(Segment segment) {
     return a < b ? Run{a, b, plain_a, plain_b} : Run{b, a, plain_b, plain_a};
 }
 
-// The vertices around an end of a segment, in the way of its line.
-double end_reach(const StrokeLook& look, Vector2 from, LatticePoint before, LatticePoint vertex,
-                 LatticePoint after) {
-    if (before == vertex || vertex == after)
+// At an end of a segment; `incoming` or `outgoing` is of length 0 where the stroke begins or ends.
+double end_reach(const StrokeLook& look, Vector2 from, Vector2 incoming, Vector2 outgoing) {
+    if (length(incoming) == 0.0 || length(outgoing) == 0.0)
         return cap_reach(look.cap, from);
-    return corner_reach(look.corner, from, direction(before, vertex), direction(vertex, after), look.limit);
+    return corner_reach(look.corner, from, incoming, outgoing, look.limit);
 }
 
-double styled_reach(const DecalGroup& group, Segment segment, const Style& style, LatticePoint point) {
-    const StrokeLook look = stroke_look(group, style.look);
+double styled_reach(const DecalGroup& group, Segment segment, double half_width, const StrokeLook& look,
+                    LatticePoint point, const Slope& slope) {
     const LargeArray<LatticePoint>& at = group.vertices;
     const Run run = run_of(segment);
-    const Vector2 from_start = way(at[run.start], point), from_end = way(at[run.end], point);
+    const auto measured = [&](LatticePoint from, LatticePoint to) {
+        return look.slope == SlopeCorrection::tangent ? slope.tangent(way(from, to)) : way(from, to);
+    };
+    const auto direction = [&](LatticePoint from, LatticePoint to) { return normalized(measured(from, to)); };
+    const Vector2 from_start = measured(at[run.start], point), from_end = measured(at[run.end], point);
     const auto within = [&](double reach, double along) {
-        return reach <= double{style.half_width} * pattern_width(look, along) ? reach : out_of_reach;
+        return reach <= half_width * pattern_width(look, along) ? reach : out_of_reach;
     };
     const double begin = group.phase(run.start);
     if (at[run.start] == at[run.end])
         return within(dot_reach(look.cap, from_start), begin);
     const LatticePoint before = at[run.start - 1], start = at[run.start], end = at[run.end],
                        after = at[run.end + 1];
-    const auto longer = [&](bool ends) {
-        return ends && look.cap == Cap::square ? double{style.half_width} : slack;
-    };
+    const auto longer = [&](bool ends) { return ends && look.cap == Cap::square ? half_width : slack; };
     const Vector2 own = direction(start, end);
     const Vector2 beyond{longer(before == start && !run.plain_start), longer(end == after && !run.plain_end)};
-    double reach = within(bar_reach(from_start, from_end, own, beyond), begin + dot(from_start, own));
+    // Patterns follow the length on the map.
+    const double stretch = length(measured(start, end)) / length(way(start, end));
+    double reach =
+        within(bar_reach(from_start, from_end, own, beyond), begin + dot(from_start, own) / stretch);
     if (!run.plain_start)
-        reach = std::min(reach, within(end_reach(look, from_start, before, start, end), begin));
+        reach = std::min(reach, within(end_reach(look, from_start, direction(before, start), own), begin));
     if (!run.plain_end)
-        reach = std::min(reach, within(end_reach(look, from_end, start, end, after), group.phase(run.end)));
+        reach = std::min(reach,
+                         within(end_reach(look, from_end, own, direction(end, after)), group.phase(run.end)));
     return reach;
 }
 
 }  // namespace
 
-double stroke_share(const DecalGroup& group, uint32_t index, LatticePoint point) {
+double stroke_share(const DecalGroup& group, uint32_t index, LatticePoint point, const Slope& slope) {
     const Segment segment = group.segments[index];
     const Style& style = group.styles[group.owner(segment.first())];
-    if (!(style.half_width > 0.0F))
+    const double half_width = style.half_width;
+    if (!(half_width > 0.0))
         return out_of_reach;
-    const double reach = group.needs.corners
-                             ? styled_reach(group, segment, style, point)
-                             : round_reach(point, group.vertices[segment.a], group.vertices[segment.b]);
-    return reach / double{style.half_width};
+    if (!group.needs.corners)
+        return round_reach(point, group.vertices[segment.a], group.vertices[segment.b]) / half_width;
+    const StrokeLook look = stroke_look(group, style.look);
+    const double width =
+        look.slope == SlopeCorrection::thoeny ? half_width * slope.thoeny_width() : half_width;
+    return styled_reach(group, segment, width, look, point, slope) / width;
 }
 
 bool band_shows(const DecalGroup& group, uint32_t slot, double share) {

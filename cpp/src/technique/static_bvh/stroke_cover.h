@@ -2,12 +2,13 @@
 #pragma once
 
 #include "technique/static_bvh/looks.h"
+#include "vector/slope.h"
 
 namespace decalgl::bvh {
 
-// The place across the stroke, from 0 at its middle to 1 at its border, at which a segment covers a point of the
-// map plane; above 1 where it does not. The segment goes by its place in the group.
-double stroke_share(const DecalGroup& group, uint32_t segment, LatticePoint point);
+// The place across the stroke, from 0 at its middle to 1 at its border, at which a segment covers a point on a
+// slope; above 1 where it does not. The segment goes by its place in the group.
+double stroke_share(const DecalGroup& group, uint32_t segment, LatticePoint point, const Slope& slope);
 
 // Whether a stroke shows anything there: bands may be transparent.
 bool band_shows(const DecalGroup& group, uint32_t slot, double share);

@@ -277,7 +277,6 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
     reference_charges.clear();
     join_chunks(chunks, chunk_charges, input, *decals);
     decals->sources = std::make_shared<const LayerSources>(input);
-    decals->look_token = std::make_shared<const LookToken>();
     progress.report(1.0);
     return decals;
 }

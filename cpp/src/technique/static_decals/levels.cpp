@@ -3,103 +3,93 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <utility>
 
+#include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
-#include "technique/static_decals/list_reader.h"
 
 namespace decalgl {
 namespace {
 
-// Samples along a bucket's side; at the finest level a cell has one.
-constexpr int bucket_samples = 1 << FINEST_LEVEL;
-constexpr int texel_samples = bucket_samples / LEVEL_TEXELS;
-
-// A number from 0 to 1 that looks like chance.
-float scattered(uint32_t seed) {
-    seed = (seed ^ 61U ^ seed >> 16) * 9U;
-    seed = (seed ^ seed >> 4) * 0x27d4eb2dU;
-    return static_cast<float>((seed ^ seed >> 15) >> 8) * 0x1p-24F;
-}
-
-// A bucket without points looks the same everywhere, but for hatches.
-int samples_across(const PreparedDecals& decals, int level) {
-    return level == 0 && (decals.style_flags & STYLE_HATCH) == 0 ? 1 : bucket_samples >> level;
-}
-
-// The samples of one cell: `side` x `side`, each somewhere in its own square.
-CellPoints<float> samples_of(int level, int side) {
-    CellPoints<float> cell;
-    cell.level = level;
-    const float step = static_cast<float>(cell_quanta(level)) / static_cast<float>(side);
-    for (int i = 0; i < side * side; ++i) {
-        const auto seed = static_cast<uint32_t>(i + 97 * level);
-        cell.x.push_back((static_cast<float>(i % side) + scattered(2 * seed)) * step);
-        cell.y.push_back((static_cast<float>(i / side) + scattered(2 * seed + 1)) * step);
-    }
-    return cell;
-}
+// Of deeper buckets nothing is kept: walking them again is cheaper than the room.
+constexpr size_t most_words = 8 * bucket_texels;
 
 struct Color {
     float r = 0.0F, g = 0.0F, b = 0.0F, a = 0.0F;
+
+    void add(const Color& other, float weight) {
+        r += weight * other.r;
+        g += weight * other.g;
+        b += weight * other.b;
+        a += weight * other.a;
+    }
 };
 
-// Composes the decals of one cell for its samples, front to back.
-void compose(const PreparedDecals& decals, ListReader<float>& reader, uint32_t list,
-             std::vector<Color>& colors) {
-    std::fill(colors.begin(), colors.end(), Color());
-    const auto add = [&](uint32_t slot, const StyleReader& style, const std::vector<float>& shares) {
-        for (size_t i = 0; i < shares.size(); ++i) {
-            if (shares[i] > 1.0F)
-                continue;
-            const std::array<uint8_t, 4> bytes = style.color(decals.styles[slot].color, double{shares[i]});
-            const float weight = (1.0F - colors[i].a) * static_cast<float>(bytes[3]) / 255.0F;
-            colors[i].r += weight * static_cast<float>(bytes[0]);
-            colors[i].g += weight * static_cast<float>(bytes[1]);
-            colors[i].b += weight * static_cast<float>(bytes[2]);
-            colors[i].a += weight;
+using BucketTexels = std::array<Color, bucket_texels>;
+
+// Stacks in the colours and the draw order of one look.
+class StackColors {
+public:
+    explicit StackColors(const PreparedDecals& look)
+        : look_(look), has_bands_((look.style_flags & STYLE_BANDS) != 0) {}
+
+    Color mean(const uint32_t*& word, size_t stacks) {
+        Color sum;
+        for (size_t i = 0; i < stacks; ++i) {
+            const uint32_t samples = *word >> stack_shift, words = *word & stack_mask;
+            sum.add(composite(word + 1, words), static_cast<float>(samples) / texel_samples);
+            word += 1 + words;
         }
-    };
-    reader.read(decals.list(list), add);
-}
-
-using BucketTexels = std::array<Color, LEVEL_TEXELS * LEVEL_TEXELS>;
-
-void add_cell(int column, int row, int side, const std::vector<Color>& colors, BucketTexels& texels) {
-    constexpr float share = 1.0F / (texel_samples * texel_samples);
-    for (int i = 0; i < side * side; ++i) {
-        const int x = (column * side + i % side) / texel_samples;
-        const int y = (row * side + i / side) / texel_samples;
-        Color& texel = texels[static_cast<size_t>(y * LEVEL_TEXELS + x)];
-        const Color& color = colors[static_cast<size_t>(i)];
-        texel.r += share * color.r;
-        texel.g += share * color.g;
-        texel.b += share * color.b;
-        texel.a += share * color.a;
+        return sum;
     }
-}
 
-void draw_bucket(const PreparedDecals& decals, uint32_t bucket, BucketTexels& texels) {
-    texels.fill(Color());
-    const uint32_t entry = decals.bucket_entries[bucket];
-    const int level = static_cast<int>(entry & ((1U << LEVEL_BITS) - 1));
-    const int side = samples_across(decals, level);
-    CellPoints<float> cell = samples_of(level, side);
-    cell.bucket_column = bucket % static_cast<uint32_t>(decals.grid.columns);
-    cell.bucket_row = bucket / static_cast<uint32_t>(decals.grid.columns);
-    ListReader<float> reader(decals, cell);
-    std::vector<Color> colors(cell.x.size());
-    for (int i = 0; i < 1 << (2 * level); ++i) {
-        const uint32_t list = decals.cells[(entry >> LEVEL_BITS) + static_cast<uint32_t>(i)];
-        if (list == EMPTY_LIST)
-            continue;
-        const int column = i & ((1 << level) - 1), row = i >> level;
-        cell.corner = {double(column) * cell_quanta(level), double(row) * cell_quanta(level)};
-        compose(decals, reader, list, colors);
-        if (side == 1 && level == 0)
-            texels.fill(colors[0]);
-        else
-            add_cell(column, row, side, colors, texels);
+private:
+    struct Level {
+        uint32_t rank, slot, band;
+    };
+
+    // Front to back.
+    Color composite(const uint32_t* words, uint32_t count) {
+        const uint32_t step = has_bands_ ? 2 : 1;
+        Color color;
+        if (look_.ranks.empty() || count == step) {
+            for (uint32_t i = 0; i < count; i += step)
+                lay_below(words[i], has_bands_ ? words[i + 1] : 0, color);
+            return color;
+        }
+        ordered_.clear();
+        for (uint32_t i = 0; i < count; i += step)
+            ordered_.push_back({look_.ranks[words[i]], words[i], has_bands_ ? words[i + 1] : 0});
+        std::sort(ordered_.begin(), ordered_.end(),
+                  [](const Level& a, const Level& b) { return a.rank < b.rank; });
+        for (const Level& level : ordered_)
+            lay_below(level.slot, level.band, color);
+        return color;
+    }
+
+    void lay_below(uint32_t slot, uint32_t band, Color& color) const {
+        const std::array<uint8_t, 4> own = look_.styles[slot].color;
+        const std::array<uint8_t, 4> bytes = has_bands_ ? StyleReader(look_, slot).color(own, band) : own;
+        const float alpha = static_cast<float>(bytes[3]) / 255.0F;
+        color.add(
+            {static_cast<float>(bytes[0]), static_cast<float>(bytes[1]), static_cast<float>(bytes[2]), 1.0F},
+            (1.0F - color.a) * alpha);
+    }
+
+    const PreparedDecals& look_;
+    bool has_bands_;
+    std::vector<Level> ordered_;
+};
+
+void paint(const BucketSamples& samples, StackColors& colors, BucketTexels& texels) {
+    const uint32_t* word = samples.words.data();
+    if (samples.words.empty()) {
+        texels.fill(Color());
+    } else if (samples.stacks.empty()) {
+        texels.fill(colors.mean(word, 1));
+    } else {
+        for (size_t i = 0; i < bucket_texels; ++i)
+            texels[i] = colors.mean(word, samples.stacks[i]);
     }
 }
 
@@ -129,28 +119,72 @@ void place_bucket(const BucketTexels& texels, const BucketGrid& grid, uint32_t b
 
 }  // namespace
 
-std::vector<uint8_t> draw_level_of_bucket(const PreparedDecals& decals, uint32_t bucket) {
+// Where strokes have other widths, nothing that was kept is right.
+void LevelPainter::take_shapes_of(const PreparedDecals& look) {
+    if (shapes_ == look.shape_token)
+        return;
+    shapes_ = look.shape_token;
+    kept_.clear();
+    kept_.resize(look.bucket_entries.size(), {0, false, {}});
+}
+
+const BucketSamples& LevelPainter::samples_of(const PreparedDecals& look, uint32_t bucket,
+                                              BucketSampler& sampler) {
+    Kept& kept = kept_[bucket];
+    const uint32_t entry = look.bucket_entries[bucket];
+    if (kept.is_kept && kept.entry == entry)
+        return kept.samples;
+    const BucketSamples& samples = sampler.sample(bucket);
+    kept.entry = entry;
+    kept.is_kept = samples.words.size() <= most_words;
+    kept.samples = kept.is_kept ? samples : BucketSamples();
+    return samples;
+}
+
+LevelRaster LevelPainter::draw(const PreparedDecals& look) {
+    take_shapes_of(look);
+    LevelRaster raster;
+    raster.width = look.grid.columns * LEVEL_TEXELS;
+    raster.height = look.grid.rows * LEVEL_TEXELS;
+    raster.texels.resize(size_t{4} * static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height));
+    parallel_for(look.grid.bucket_count(), 64, 0, [&](size_t begin, size_t end) {
+        BucketSampler sampler(look);
+        StackColors colors(look);
+        BucketTexels texels;
+        for (size_t i = begin; i < end; ++i) {
+            const auto bucket = static_cast<uint32_t>(i);
+            paint(samples_of(look, bucket, sampler), colors, texels);
+            place_bucket(texels, look.grid, bucket, raster);
+        }
+    });
+    charge_kept();
+    return raster;
+}
+
+std::vector<uint8_t> LevelPainter::draw_bucket(const PreparedDecals& look, uint32_t bucket) {
+    take_shapes_of(look);
+    BucketSampler sampler(look);
+    StackColors colors(look);
     BucketTexels texels;
-    draw_bucket(decals, bucket, texels);
-    std::vector<uint8_t> bytes(size_t{4} * LEVEL_TEXELS * LEVEL_TEXELS);
+    paint(samples_of(look, bucket, sampler), colors, texels);
+    std::vector<uint8_t> bytes(4 * bucket_texels);
     for (size_t y = 0; y < LEVEL_TEXELS; ++y)
         write_row(texels, y, &bytes[4 * y * LEVEL_TEXELS]);
     return bytes;
 }
 
-LevelRaster draw_finest_level(const PreparedDecals& decals) {
-    LevelRaster raster;
-    raster.width = decals.grid.columns * LEVEL_TEXELS;
-    raster.height = decals.grid.rows * LEVEL_TEXELS;
-    raster.texels.resize(size_t{4} * static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height));
-    parallel_for(decals.grid.bucket_count(), 64, 0, [&](size_t begin, size_t end) {
-        BucketTexels texels;
-        for (size_t bucket = begin; bucket < end; ++bucket) {
-            draw_bucket(decals, static_cast<uint32_t>(bucket), texels);
-            place_bucket(texels, decals.grid, static_cast<uint32_t>(bucket), raster);
-        }
-    });
-    return raster;
+// What does not fit into the budget is found again when it is needed.
+void LevelPainter::charge_kept() {
+    uint64_t bytes = kept_.size() * sizeof(Kept);
+    for (const Kept& each : kept_)
+        bytes += each.samples.words.capacity() * sizeof(uint32_t) + each.samples.stacks.capacity();
+    try {
+        charge_ = MemoryCharge();
+        charge_ = MemoryCharge(memory_, "static: levels", bytes);
+    } catch (const Error&) {
+        shapes_ = nullptr;
+        kept_ = {};
+    }
 }
 
 }  // namespace decalgl

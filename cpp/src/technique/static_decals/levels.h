@@ -7,9 +7,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "decalgl/core/large_array.h"
+#include "technique/static_decals/level_samples.h"
 #include "technique/static_decals/prepared_decals.h"
 
 namespace decalgl {
@@ -20,9 +22,32 @@ struct LevelRaster {
     LargeArray<uint8_t> texels;  // R, G, B, A, premultiplied; the lowest row first
 };
 
-// On all cores; the same bytes on any number of them.
-LevelRaster draw_finest_level(const PreparedDecals& decals);
-// The part of it that lies in one bucket, LEVEL_TEXELS a side.
-std::vector<uint8_t> draw_level_of_bucket(const PreparedDecals& decals, uint32_t bucket);
+// Draws the finest level of an index in any looks. What the samples see is kept, so that only the first one, other widths and
+// what was edited take a walk through the lists.
+class LevelPainter {
+public:
+    explicit LevelPainter(const MemoryAccount& memory = MemoryAccount()) : memory_(memory) {}
+
+    // On all cores; the same bytes on any number of them, and whatever was kept.
+    LevelRaster draw(const PreparedDecals& look);
+    // The part of it that lies in one bucket, LEVEL_TEXELS a side.
+    std::vector<uint8_t> draw_bucket(const PreparedDecals& look, uint32_t bucket);
+
+private:
+    struct Kept {
+        uint32_t entry;  // of the bucket then
+        bool is_kept;
+        BucketSamples samples;
+    };
+
+    void take_shapes_of(const PreparedDecals& look);
+    const BucketSamples& samples_of(const PreparedDecals& look, uint32_t bucket, BucketSampler& sampler);
+    void charge_kept();
+
+    MemoryAccount memory_;
+    MemoryCharge charge_;
+    std::shared_ptr<const ShapeToken> shapes_;
+    std::vector<Kept> kept_;
+};
 
 }  // namespace decalgl

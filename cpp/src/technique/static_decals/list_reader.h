@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "technique/static_decals/style_reader.h"
+#include "vector/slope.h"
 
 namespace decalgl {
 
@@ -21,9 +22,11 @@ template <typename Real>
 class ListReader {
 public:
     // The cell's place may change between lists, its level and its points may not.
-    ListReader(const PreparedDecals& decals, const CellPoints<Real>& cell)
+    // `slope`: of the ground at the points.
+    ListReader(const PreparedDecals& decals, const CellPoints<Real>& cell, const Slope& slope = Slope())
         : decals_(decals),
           cell_(cell),
+          slope_(slope),
           bias_(static_cast<Real>(cell_bias(cell.level))),
           at_x_(cell.x.size()),
           at_y_(cell.x.size()),
@@ -58,15 +61,24 @@ private:
         is_line_ = (header & LINE) != 0;
         is_clip_ = (header & CLIP) != 0;
         style_ = StyleReader(decals_, slot_);
+        if (style_.is(STYLE_THOENY))
+            style_.multiply_width(slope_.thoeny_width());
         has_came_ = awaits_phase_ = false;
         std::fill(shares_.begin(), shares_.end(), (header & COVERS) != 0 ? Real(0) : none_);
         const Real unit = is_line_ ? std::ldexp(Real(1), -style_.scale()) : Real(1);
-        if (unit == unit_)
+        const bool is_tangent = is_line_ && style_.is(STYLE_TANGENT);
+        if (unit == unit_ && is_tangent == is_tangent_)
             return;
         unit_ = unit;
+        is_tangent_ = is_tangent;
         for (size_t i = 0; i < shares_.size(); ++i) {
             at_x_[i] = cell_.x[i] * unit + bias_;
             at_y_[i] = cell_.y[i] * unit + bias_;
+            if (is_tangent) {
+                const Vector2 on_slope = measured(at(i));
+                at_x_[i] = static_cast<Real>(on_slope.x);
+                at_y_[i] = static_cast<Real>(on_slope.y);
+            }
         }
     }
 
@@ -83,7 +95,7 @@ private:
             if (!moves)
                 add_crossing(to);
         } else if (!style_.is(STYLE_JOINED)) {
-            add_capsule(moves ? to : from_, to);
+            add_capsule(measured(moves ? to : from_), measured(to));
         } else if (moves) {
             has_came_ = has_came_ && to.x == from_.x && to.y == from_.y;
             awaits_phase_ = style_.is(STYLE_PATTERN);
@@ -94,6 +106,9 @@ private:
     }
 
     Vector2 at(size_t point) const { return {double{at_x_[point]}, double{at_y_[point]}}; }
+
+    // As the group's lengths are measured: vectors, and so the places that they lead to.
+    Vector2 measured(Vector2 v) const { return is_tangent_ ? slope_.tangent(v) : v; }
 
     void cover(size_t point, double share, double width) {
         if (share <= width)
@@ -116,10 +131,12 @@ private:
     }
 
     void add_joined_edge(Vector2 to) {
-        const Vector2 along = to - from_;
+        const Vector2 on_map = to - from_, along = measured(on_map), from = measured(from_);
         const double length = std::sqrt(dot(along, along)), width = style_.width_at(periods_);
+        // Patterns follow the length on the map.
+        const double periods = std::sqrt(dot(on_map, on_map)) * style_.periods_per_unit();
         for (size_t i = 0; i < shares_.size(); ++i) {
-            const Vector2 past = at(i) - from_;
+            const Vector2 past = at(i) - from;
             if (length == 0.0) {
                 cover(i, std::sqrt(dot(past, past)) / style_.half_width(), width);
                 continue;
@@ -127,7 +144,7 @@ private:
             const double t = dot(past, along) / length;
             if (t >= 0.0 && t <= length)
                 cover(i, std::abs(cross(past, along)) / length / style_.half_width(),
-                      style_.width_at(periods_ + t * style_.periods_per_unit()));
+                      style_.width_at(periods_ + t / length * periods));
             if (has_came_)
                 cover(i, style_.corner_share(past, came_, along), width);
         }
@@ -135,7 +152,7 @@ private:
             return;
         has_came_ = true;
         came_ = along;
-        periods_ += length * style_.periods_per_unit();
+        periods_ += periods;
     }
 
     // ring_cells.h
@@ -180,9 +197,11 @@ private:
     static constexpr Real none_ = static_cast<Real>(not_covered);
     const PreparedDecals& decals_;
     const CellPoints<Real>& cell_;
+    Slope slope_;
     Real bias_;
     Real unit_ = 0;
-    std::vector<Real> at_x_, at_y_;  // the points, in the group's coordinates
+    bool is_tangent_ = false;
+    std::vector<Real> at_x_, at_y_;  // the points, in the group's coordinates, as it measures them
     std::vector<Real> shares_;
     std::vector<char> open_;  // not cut off by the clip before
     uint32_t slot_ = 0;

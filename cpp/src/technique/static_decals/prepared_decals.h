@@ -33,6 +33,7 @@ static_assert(sizeof(LayerRules) == 32, "saved as it is");
 class LayerSources;
 
 struct LookToken {};
+struct ShapeToken {};
 
 class PreparedDecals : public Prepared {
 public:
@@ -90,8 +91,10 @@ public:
     GrowingArray<uint32_t> growing_cells;  // cells and words, once edits have added to them
     GrowingArray<uint32_t> growing_words;
     uint64_t unused_words = 0;  // of lists that edits have replaced
-    // Where two indexes share it, buckets with the same entry look the same in both.
-    std::shared_ptr<const LookToken> look_token;
+    // Where two indexes share it, buckets with the same entry look the same in both; or the same decals cover the same
+    // points in both.
+    std::shared_ptr<const LookToken> look_token = std::make_shared<const LookToken>();
+    std::shared_ptr<const ShapeToken> shape_token = std::make_shared<const ShapeToken>();
 };
 
 // Throws Error(memory) where the index would not fit into the budget or what can be addressed, Error(cancelled).

@@ -43,7 +43,8 @@ std::vector<FeatureReference> PreparedDecals::query(const SeenPoint& point) cons
     uint32_t entry = 0;
     if (!locate(*this, point.x, point.y, cell, entry))
         return found;
-    ListReader<double>(*this, cell)
+    const Slope slope({point.gradient_x, point.gradient_y}, point.forward_z);
+    ListReader<double>(*this, cell, slope)
         .read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares) {
             const FeatureReference feature = slots[slot].feature;
             if (shares[0] <= 1.0 && styles[slot].color[3] != 0 &&

@@ -44,6 +44,10 @@ void require_widths(const LayerLook& look, const PreparedDecals& decals) {
     }
 }
 
+bool has_widths(const LayerLook& look) {
+    return !look.stroke.widths.empty() || !look.casing.widths.empty();
+}
+
 void apply(const DecalLook& look, const Decal& slot, double half_widths_per_metre, DecalStyle& style) {
     const size_t feature = slot.feature.feature;
     if (!look.widths.empty())
@@ -167,6 +171,8 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
     });
     result->styles = charged(SharedArray<DecalStyle>(std::move(changed)), memory, "static: prepared");
     result->look_token = std::make_shared<const LookToken>();
+    if (std::any_of(looks.begin(), looks.end(), has_widths))
+        result->shape_token = std::make_shared<const ShapeToken>();
     result->summarise_styles();
     for (const LayerLook& look : looks)
         if (!look.draw_order.empty() && look.layer < rules.size())

@@ -6,9 +6,8 @@
 
 #include "gl/gl.h"
 #include "gl/texture.h"
+#include "technique/half_planes.h"
 #include "technique/static_decals/area_classes.h"
-#include "technique/static_decals/half_planes.h"
-#include "technique/static_decals/levels.h"
 
 namespace decalgl {
 
@@ -37,17 +36,6 @@ void set_grid(const BucketGrid& grid, gl::Program& program) {
 template <typename T>
 bool is_same(const SharedArray<T>& a, const SharedArray<T>& b) {
     return a.data() == b.data() && a.size() == b.size();
-}
-
-gl::Texture2D make_levels(const PreparedDecals& decals, const MemoryAccount& memory) {
-    const LevelRaster finest = draw_finest_level(decals);
-    const int count = 1 + static_cast<int>(std::log2(std::max(finest.width, finest.height)));
-    gl::Texture2D levels =
-        gl::Texture2D::create(memory, "static: levels", GL_RGBA8, finest.width, finest.height, count);
-    levels.update(0, 0, 0, finest.width, finest.height, finest.texels.data());
-    levels.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
-    glGenerateTextureMipmap(levels.id());
-    return levels;
 }
 
 bool has_styles(const PreparedDecals& decals) {
@@ -97,34 +85,56 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
     refresh("static: styles", GL_R32UI, &PreparedDecals::kinds, kinds_);
     refresh("static: styles", GL_RGBA32UI, &PreparedDecals::style_records, style_records_);
     upload_styles(next.get(), next_lens.get());
-    refresh_levels(prepared_.get(), next.get(), levels_);
-    refresh_levels(lens_.get(), next_lens.get(), lens_levels_);
+    refresh_levels(*next, next_lens.get());
     if (!no_vertices_) {
-        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_R32UI, make_half_planes());
+        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_RG32UI, make_half_planes());
         no_vertices_ = gl::VertexArray::create();
     }
     prepared_ = std::move(next);
     lens_ = std::move(next_lens);
 }
 
-// Levels of another look are made anew when they are needed; after an edit, only the buckets that it touched.
-void StaticDecals::refresh_levels(const PreparedDecals* before, const PreparedDecals* after,
-                                  gl::Texture2D& levels) {
-    if (!levels || before == after)
-        return;
-    if (before == nullptr || after == nullptr || before->look_token != after->look_token) {
-        levels = gl::Texture2D();
-        return;
+// Levels of another look are drawn anew when they are needed; after an edit, only the buckets that it touched.
+void StaticDecals::refresh_levels(const PreparedDecals& next, const PreparedDecals* next_lens) {
+    if (lens_.get() != next_lens)
+        lens_levels_.is_drawn = false;
+    if (next_lens == nullptr) {
+        lens_levels_ = {};
+        lens_painter_ = LevelPainter(memory_);
     }
-    const auto columns = static_cast<uint32_t>(after->grid.columns);
-    for (uint32_t bucket = 0; bucket < after->bucket_entries.size(); ++bucket) {
-        if (before->bucket_entries[bucket] == after->bucket_entries[bucket])
+    if (!prepared_ || prepared_->shape_token != next.shape_token) {
+        levels_ = {};
+        level_painter_ = LevelPainter(memory_);
+    } else if (prepared_->look_token != next.look_token) {
+        levels_.is_drawn = false;
+    }
+    if (!levels_.is_drawn || prepared_.get() == &next)
+        return;
+    const auto columns = static_cast<uint32_t>(next.grid.columns);
+    for (uint32_t bucket = 0; bucket < next.bucket_entries.size(); ++bucket) {
+        if (prepared_->bucket_entries[bucket] == next.bucket_entries[bucket])
             continue;
-        levels.update(0, static_cast<int>(bucket % columns) * LEVEL_TEXELS,
-                      static_cast<int>(bucket / columns) * LEVEL_TEXELS, LEVEL_TEXELS, LEVEL_TEXELS,
-                      draw_level_of_bucket(*after, bucket).data());
+        levels_.texture.update(0, static_cast<int>(bucket % columns) * LEVEL_TEXELS,
+                               static_cast<int>(bucket / columns) * LEVEL_TEXELS, LEVEL_TEXELS, LEVEL_TEXELS,
+                               level_painter_.draw_bucket(next, bucket).data());
     }
-    glGenerateTextureMipmap(levels.id());
+    glGenerateTextureMipmap(levels_.texture.id());
+}
+
+void StaticDecals::draw_levels(const PreparedDecals& look, LevelPainter& painter, Levels& levels) {
+    if (levels.is_drawn)
+        return;
+    const LevelRaster finest = painter.draw(look);
+    const int count = 1 + static_cast<int>(std::log2(std::max(finest.width, finest.height)));
+    if (levels.texture.width() != finest.width || levels.texture.height() != finest.height) {
+        levels.texture = gl::Texture2D();
+        levels.texture =
+            gl::Texture2D::create(memory_, "static: levels", GL_RGBA8, finest.width, finest.height, count);
+        levels.texture.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
+    }
+    levels.texture.update(0, 0, 0, finest.width, finest.height, finest.texels.data());
+    glGenerateTextureMipmap(levels.texture.id());
+    levels.is_drawn = true;
 }
 
 // Into the buffer that is there, where it is as large as needed: a restyle allocates nothing.
@@ -165,15 +175,16 @@ UpdateReport StaticDecals::update(const View& view) {
     if (view.antialias == Antialias::coverage && view.coverage == CoverageRule::thoeny && !kinds_)
         make_records();
     draws_levels_ = needs_levels(view);
-    if (draws_levels_ && !levels_)
-        levels_ = make_levels(*prepared_, memory_);
-    if (draws_levels_ && lens_ && !lens_levels_)
-        lens_levels_ = make_levels(*lens_, memory_);
+    if (draws_levels_)
+        draw_levels(*prepared_, level_painter_, levels_);
+    if (draws_levels_ && lens_)
+        draw_levels(*lens_, lens_->shape_token == prepared_->shape_token ? level_painter_ : lens_painter_,
+                    lens_levels_);
     UpdateReport report;
     report.pieces = prepared_->pieces;
     report.bytes = buckets_.buffer().bytes() + cells_.bytes() + texels_.bytes() + styles_.buffer().bytes() +
                    kinds_.buffer().bytes() + style_records_.buffer().bytes() + half_planes_.buffer().bytes() +
-                   levels_.bytes() + lens_levels_.bytes();
+                   levels_.texture.bytes() + lens_levels_.texture.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
@@ -296,10 +307,10 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     set_grid(prepared_->grid, program);
     if (flags.count("LEVELS") != 0) {
         program.set("levels", 6);
-        levels_.bind(6);
+        levels_.texture.bind(6);
         if (lens_) {
             program.set("lens_levels", 9);
-            lens_levels_.bind(9);
+            lens_levels_.texture.bind(9);
         }
     }
     if (flags.count("ONE_COLOR") != 0) {

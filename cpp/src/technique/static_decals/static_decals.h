@@ -7,6 +7,7 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "technique/static_decals/growing_buffer.h"
+#include "technique/static_decals/levels.h"
 #include "technique/static_decals/prepared_decals.h"
 
 namespace decalgl {
@@ -26,6 +27,12 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
+    // Of one look, made by the first view that needs them.
+    struct Levels {
+        gl::Texture2D texture;
+        bool is_drawn = false;
+    };
+
     bool needs_levels(const View& view) const;
     void upload_styles(const PreparedDecals* prepared, const PreparedDecals* lens);
     // What is seen outside the lens, and inside.
@@ -33,8 +40,8 @@ private:
     bool any_look(HoldsFor holds_for) const {
         return holds_for(*prepared_) || (lens_ && holds_for(*lens_));
     }
-    static void refresh_levels(const PreparedDecals* before, const PreparedDecals* after,
-                               gl::Texture2D& levels);
+    void refresh_levels(const PreparedDecals& next, const PreparedDecals* next_lens);
+    void draw_levels(const PreparedDecals& look, LevelPainter& painter, Levels& levels);
     void add_style_flags(gl::Flags& flags) const;
     void make_records();
     void draw_areas(const gl::Flags& flags, CoverageRule rule, const GBufferView& gbuffer,
@@ -50,8 +57,8 @@ private:
     gl::TextureBuffer styles_;                 // those inside the lens follow the others
     gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
     gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
-    gl::Texture2D levels_;                     // made by the first view that needs them
-    gl::Texture2D lens_levels_;
+    Levels levels_, lens_levels_;
+    LevelPainter level_painter_, lens_painter_;
     bool draws_levels_ = false;
     gl::VertexArray no_vertices_;
 };

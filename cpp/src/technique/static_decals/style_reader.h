@@ -37,6 +37,7 @@ public:
 
     bool is(uint32_t flag) const { return (record_[0][0] & flag) != 0; }
     int scale() const { return scale_; }
+    void multiply_width(double factor) { half_width_ *= factor; }
     double half_width() const { return std::ldexp(half_width_, -scale_); }  // in units of the group's words
     double periods_per_unit() const {
         return is(STYLE_PATTERN) ? std::ldexp(double{float_of(record_[0][2])}, scale_) : 0.0;
@@ -81,15 +82,22 @@ public:
         return apart / half_width();
     }
 
-    std::array<uint8_t, 4> color(std::array<uint8_t, 4> own, double share) const {
+    // Of those that there are, the one at a share of the half width.
+    uint32_t band(double share) const {
+        if (!is(STYLE_BANDS))
+            return 0;
+        const uint32_t first = 1 + mark_count(), last = (record_[0][3] >> BANDS_SHIFT) - 1;
+        uint32_t i = 0;
+        while (i < last && share > double{float_of(record_[first + i][0])})
+            ++i;
+        return i;
+    }
+
+    std::array<uint8_t, 4> color(std::array<uint8_t, 4> own, uint32_t band) const {
         if (!is(STYLE_BANDS))
             return own;
-        uint32_t i = 1 + mark_count();
-        const uint32_t last = i + (record_[0][3] >> BANDS_SHIFT) - 1;
-        while (i < last && share > double{float_of(record_[i][0])})
-            ++i;
         std::array<uint8_t, 4> color{};
-        std::memcpy(color.data(), &record_[i][1], sizeof color);
+        std::memcpy(color.data(), &record_[1 + mark_count() + band][1], sizeof color);
         color[3] = static_cast<uint8_t>(std::lrint(color[3] * own[3] / 255.0));
         return color;
     }

@@ -1,4 +1,4 @@
-#include "technique/static_decals/half_planes.h"
+#include "technique/half_planes.h"
 
 #include <algorithm>
 #include <array>
@@ -7,13 +7,13 @@
 #include <glm/vec2.hpp>
 #include <numeric>
 
-#include "shared/sample_offsets.h"
-#include "technique/static_decals/half_plane_table.h"
+#include "shared/area_samples.h"
+#include "shared/half_plane_table.h"
 
 namespace decalgl {
 namespace {
 
-const std::array<glm::dvec2, SAMPLE_COUNT> sample_offsets{SAMPLE_OFFSETS(glm::dvec2)};
+const std::array<glm::dvec2, AREA_SAMPLE_COUNT> sample_offsets{AREA_SAMPLE_OFFSETS(glm::dvec2)};
 
 // The direction on the diamond |a| + |b| = 1 of a row, from the x axis over the y axis.
 glm::dvec2 direction_of(int row) {
@@ -32,12 +32,12 @@ double covered_share(glm::dvec2 direction, double distance) {
 
 }  // namespace
 
-std::vector<uint32_t> make_half_planes() {
-    std::vector<uint32_t> table;
+std::vector<uint64_t> make_half_planes() {
+    std::vector<uint64_t> table;
     table.reserve(size_t{HALF_PLANE_TURNS + 1} * HALF_PLANE_OFFSETS);
     for (int row = 0; row <= HALF_PLANE_TURNS; ++row) {
         const glm::dvec2 direction = direction_of(row);
-        std::array<size_t, SAMPLE_COUNT> deepest_first{};
+        std::array<size_t, AREA_SAMPLE_COUNT> deepest_first{};
         std::iota(deepest_first.begin(), deepest_first.end(), size_t{0});
         std::stable_sort(deepest_first.begin(), deepest_first.end(), [&](size_t a, size_t b) {
             return glm::dot(direction, sample_offsets[a]) > glm::dot(direction, sample_offsets[b]);
@@ -45,10 +45,10 @@ std::vector<uint32_t> make_half_planes() {
         for (int column = 0; column < HALF_PLANE_OFFSETS; ++column) {
             const double distance = column / (HALF_PLANE_OFFSETS - 1.0) - 0.5;
             const auto count =
-                static_cast<size_t>(std::lrint(SAMPLE_COUNT * covered_share(direction, distance)));
-            uint32_t samples = 0;
+                static_cast<size_t>(std::lrint(AREA_SAMPLE_COUNT * covered_share(direction, distance)));
+            uint64_t samples = 0;
             for (size_t i = 0; i < count; ++i)
-                samples |= 1U << deepest_first[i];
+                samples |= uint64_t{1} << deepest_first[i];
             table.push_back(samples);
         }
     }

@@ -1,0 +1,20 @@
+// What users may choose of shadow volumes.
+#pragma once
+
+#include "decalgl/vector/layer.h"
+
+namespace decalgl::volume {
+
+enum class Grouping : uint8_t { exact, colors };
+
+struct VolumeOptions : TechniqueOptions {
+    Grouping grouping = Grouping::exact;
+    double arc_step = 11.25;  // degrees between the vertices of round corners and caps
+
+    bool equals(const TechniqueOptions& other) const override {
+        const auto* options = dynamic_cast<const VolumeOptions*>(&other);
+        return options != nullptr && options->grouping == grouping && options->arc_step == arc_step;
+    }
+};
+
+}  // namespace decalgl::volume

@@ -1,0 +1,75 @@
+// One run of segments: how many fall into each tile, or with FILL, the segments into their places.
+//
+// A segment falls into the tiles that the disc of its reach touches on its way, row by row of tiles:
+//
+//     +-----+-----+-----+
+//     |     |   o-|--   |     in a row, between the ends of the stretch that comes near to it
+//     +-----+-/---+-----+
+//     |   --|o    |     |
+//     +-----+-----+-----+
+#include "technique/dynamic_lines/bins_layout.h"
+#include "technique/dynamic_lines/items.glsl"
+
+uniform samplerBuffer segment_spans;
+uniform samplerBuffer segment_reaches;
+uniform ivec2 tile_grid;
+uniform uint run_count;
+uniform uint run_length;
+
+layout(std430, binding = 0) readonly buffer Count {
+    uint segment_count;
+};
+layout(std430, binding = 1) buffer Places {
+    uint places[];  // of each tile, run by run
+};
+#ifdef FILL
+layout(std430, binding = 2) writeonly buffer List {
+    uint list[];
+};
+#endif
+
+void add_to_tile(ivec2 tile, uint run, uint segment) {
+    uint at = uint(tile.y * tile_grid.x + tile.x) * run_count + run;
+    uint place = places[at];
+    places[at] = place + 1u;
+#ifdef FILL
+    list[place] = segment;
+#endif
+}
+
+// The first and last column of tiles in a row of them; the other way round where there are none.
+ivec2 columns_in_row(vec4 span, float reach, int row) {
+    vec2 edges = (vec2(row, row + 1) + vec2(-reach, reach) / float(TILE_SIDE)) * float(TILE_SIDE);
+    float rise = span.w - span.y;
+    vec2 shares = (edges - span.y) / (abs(rise) > 1e-6 ? rise : 1e-6);
+    shares = abs(rise) > 1e-6 ? clamp(vec2(min(shares.x, shares.y), max(shares.x, shares.y)), 0.0, 1.0) : vec2(0.0, 1.0);
+    vec2 x = span.x + shares * (span.z - span.x);
+    vec2 range = vec2(min(x.x, x.y) - reach, max(x.x, x.y) + reach) / float(TILE_SIDE);
+    return ivec2(clamp(floor(range), vec2(0.0, -1.0), vec2(tile_grid.x, tile_grid.x - 1)));
+}
+
+void main() {
+    uint run = this_item();
+    if (run >= item_count) return;
+    uint segment = run * run_length;
+    uint end = min(segment + run_length, segment_count);
+    if (segment >= end) return;
+    do {
+        float reach = texelFetch(segment_reaches, int(segment)).r;
+        vec4 span = texelFetch(segment_spans, int(segment));
+        vec2 y = vec2(min(span.y, span.w) - reach, max(span.y, span.w) + reach) / float(TILE_SIDE);
+        ivec2 rows = ivec2(clamp(floor(y), vec2(0.0), vec2(tile_grid.y - 1)));
+        if (reach >= 0.0) {
+            int row = rows.x;
+            do {
+                ivec2 columns = columns_in_row(span, reach, row);
+                int column = columns.x;
+                if (column <= columns.y) {
+                    do {
+                        add_to_tile(ivec2(column, row), run, segment);
+                    } while (++column <= columns.y);
+                }
+            } while (++row <= rows.y);
+        }
+    } while (++segment < end);
+}

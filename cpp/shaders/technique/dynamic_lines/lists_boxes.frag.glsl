@@ -1,0 +1,81 @@
+// A pixel inside a segment's box: if the line covers it, it gets an entry (Zechmeister 2020, section 4.3.2).
+//
+// THESIS   distances on the map, by widths that grow with the distance (equations 4.1 and 4.2); else on the screen
+// JOINED   corners and caps that are not round
+// LIMITS   widths that depend on the depth
+// LENS     other looks inside the lens
+#include "technique/dynamic_lines/line_looks.glsl"
+#include "technique/dynamic_lines/line_point.glsl"
+#include "technique/dynamic_lines/lists_buffers.glsl"
+#include "technique/dynamic_lines/screen_plane.glsl"
+
+flat in vec4 part_ends;
+flat in vec4 part_joints;
+flat in uvec2 part_line;
+
+uniform sampler2D surface_texture;
+uniform uint entry_room;
+uniform uint longest_list;
+#ifdef LENS
+uniform sampler2D lens_texture;
+#endif
+
+bool begins() {
+    return (part_line.y & 1u) != 0u;
+}
+
+bool ends() {
+    return (part_line.y & 2u) != 0u;
+}
+
+#ifdef THESIS
+
+bool covered(vec2 pixel, ScreenPlane plane, LineLook look) {
+    // Where the ray is longer than the depth, a pixel stands for more metres.
+    float pixels_per_metre = plane.pixels_per_metre / length(ray_direction_at(pixel));
+    float half_width = half_width_in_pixels(look, part_line.x, pixels_per_metre) / pixels_per_metre;
+    vec4 at = part_ends - plane.place.xyxy;
+    LinePart part = LinePart(at.xy, at.zw, unit_vector(part_ends.xy - part_joints.xy),
+                             unit_vector(part_joints.zw - part_ends.zw), begins(), ends());
+    return half_width > 0.0 && covers(part, look.kind, half_width);
+}
+
+#else
+
+vec2 direction_on_screen(ScreenPlane plane, vec4 ends) {
+    ScreenSegment segment = on_screen(plane, ends);
+    return unit_vector(segment.to - segment.from);
+}
+
+bool covered(vec2 pixel, ScreenPlane plane, LineLook look) {
+    float half_width = half_width_in_pixels(look, part_line.x, plane.pixels_per_metre);
+    ScreenSegment segment = on_screen(plane, part_ends);
+    LinePart part = LinePart(segment.from, segment.to, vec2(0.0), vec2(0.0), begins(), ends());
+#ifdef JOINED
+    part.incoming = direction_on_screen(plane, vec4(part_joints.xy, part_ends.xy));
+    part.outgoing = direction_on_screen(plane, vec4(part_ends.zw, part_joints.zw));
+#endif
+    return segment.seen && half_width > 0.0 && covers(part, look.kind, half_width);
+}
+
+#endif
+
+void append(uint list, vec4 color) {
+    uint entry = atomicAdd(entry_total, 1u);
+    if (entry >= entry_room) return;
+    entries[entry] = uvec2(part_line.x, packUnorm4x8(color));
+    next[entry] = atomicExchange(heads[list], entry);
+    if (atomicAdd(counts[list], 1u) >= longest_list) is_too_long = 1u;
+}
+
+void main() {
+    ivec2 place = ivec2(gl_FragCoord.xy);
+    vec4 surface = texelFetch(surface_texture, place, 0);
+    if (isinf(surface.z)) return;
+#ifdef LENS
+    if (texelFetch(lens_texture, place, 0).g > 0.5) first_style = lens_styles;
+#endif
+    LineLook look = look_of(part_line.x);
+    vec2 pixel = pixel_from_centre();
+    if (look.color.a > 0.0 && covered(pixel, screen_plane(pixel, surface), look)) append(list_of(place), look.color);
+}

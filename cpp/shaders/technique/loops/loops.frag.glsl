@@ -1,0 +1,62 @@
+// LOOPS: features simplified by the view, looked up pixel by pixel.
+//
+//     pixel ─▶ map position ─▶ lists of the tree ─▶ triangles and edges that are active ─▶ parity, or distance
+//
+// FILLS, STROKES     what there is
+// SEGMENTS           strokes by the segments of all levels, else by triangles
+// PATHS              a position has a list at each level of a secondary tree, else one
+// SCREEN             a bound in pixels
+// BY_DISTANCE        a bound by the distance from the eye
+// CIRCLE             a lens on the map
+// SAMPLES            the mean of 32 points of the pixel's area, else its centre
+// TESTED, ACTIVE     how many primitives were looked at, or active, as colours
+// IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
+#include "shared/ray.glsl"
+#include "technique/loops/walk.glsl"
+
+uniform usampler2D position_texture;
+#ifdef SAMPLES
+#include "shared/sample_offsets.glsl"
+uniform sampler2D surface_texture;
+#endif
+#if defined(TESTED) || defined(ACTIVE)
+uniform float heat_top;
+
+// From dark blue over green and yellow to red.
+vec4 heat(int count) {
+    float t = clamp(float(count) / heat_top, 0.0, 1.0);
+    vec3 color = clamp(vec3(2.0 * t - 0.6, 1.6 - abs(3.2 * t - 1.6), 0.9 - 2.2 * t), 0.0, 1.0);
+    return count == 0 ? vec4(0.0, 0.0, 0.15, 1.0) : vec4(color, 1.0);
+}
+#endif
+
+#ifdef IDS
+layout(location = 0) out uint id;
+#else
+layout(location = 0) out vec4 color;
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    Position position = unpack_position(texelFetch(position_texture, pixel, 0));
+    if (is_sky(position)) discard;
+#if defined(SAMPLES)
+    vec4 surface = texelFetch(surface_texture, pixel, 0);
+    mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < sample_count; ++i) sum += walk(lattice_point(position, foot * sample_offsets[i])).sum;
+    color = sum / float(sample_count);
+#else
+    Found found = walk(lattice_point(position, vec2(0.0)));
+#if defined(TESTED)
+    color = heat(found.tested);
+#elif defined(ACTIVE)
+    color = heat(found.active_count);
+#elif defined(IDS)
+    if (found.seen == no_slot) discard;
+    id = found.seen + 1u;
+#else
+    color = found.sum;
+#endif
+#endif
+}

@@ -1,0 +1,2 @@
+// Faces of volumes leave nothing but counts in the stencil.
+void main() {}

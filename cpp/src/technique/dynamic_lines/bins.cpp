@@ -1,0 +1,148 @@
+#include "technique/dynamic_lines/bins.h"
+
+#include <algorithm>
+#include <string>
+
+#include "decalgl/core/error.h"
+#include "gl/context.h"
+#include "gl/gl.h"
+#include "gl/pass_timer.h"
+#include "technique/dynamic_lines/bins_layout.h"
+#include "technique/dynamic_lines/dispatch.h"
+#include "technique/half_planes.h"
+
+namespace decalgl {
+namespace {
+
+// Runs: enough for all cores, as long as the counts of all tiles stay few.
+constexpr uint32_t shortest_run = 512;
+constexpr uint32_t most_runs = 2048;
+constexpr uint32_t most_counts = 1U << 23;
+
+// Pixels beyond its width that a segment is looked for: the ground that a pixel sees is not the ground under the line.
+// Jitters and the terrain's level of detail come to it.
+constexpr float slack_pixels = 1.0F;
+constexpr float slack_share = 0.25F;
+
+uint32_t divided(uint32_t count, uint32_t by) {
+    return (count + by - 1) / by;
+}
+
+gl::TextureBuffer make_texels(const MemoryAccount& memory, GLenum format, size_t texel_bytes, size_t count) {
+    return gl::TextureBuffer::create(memory, "dynamic: bins", format,
+                                     texel_bytes * std::max<size_t>(count, 1));
+}
+
+}  // namespace
+
+LineBins::LineBins(const MemoryAccount& memory)
+    : memory_(memory),
+      no_vertices_(gl::VertexArray::create()),
+      half_planes_(gl::TextureBuffer::from(memory, "dynamic: half planes", GL_R32UI, make_half_planes())) {}
+
+void LineBins::reserve(const View& view, uint32_t segments) {
+    grid_ = {static_cast<int>(divided(static_cast<uint32_t>(view.width), TILE_SIDE)),
+             static_cast<int>(divided(static_cast<uint32_t>(view.height), TILE_SIDE))};
+    const auto tiles = static_cast<uint32_t>(grid_.x * grid_.y);
+    run_count_ = std::clamp(segments / shortest_run, 1U, std::clamp(most_counts / tiles, 1U, most_runs));
+    run_length_ = std::max(divided(segments, run_count_), 1U);
+    if (segments > segment_room_ || !ends_) {
+        segment_room_ = 0;
+        for (gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_})
+            *buffer = gl::TextureBuffer();
+        ends_ = make_texels(memory_, GL_RGBA32F, 16, segments);
+        joints_ = make_texels(memory_, GL_RGBA32UI, 16, segments);
+        spans_ = make_texels(memory_, GL_RGBA32F, 16, segments);
+        reaches_ = make_texels(memory_, GL_R32F, 4, segments);
+        segment_room_ = segments;
+    }
+    const uint32_t counts = tiles * run_count_ + 1;
+    if (counts > places_.texels()) {
+        places_ = gl::TextureBuffer();
+        places_ = make_texels(memory_, GL_R32UI, 4, counts);
+        sums_ = PrefixSum();
+        sums_ = PrefixSum(counts, memory_);
+    }
+}
+
+void LineBins::update(const View& view, const MatchedLines& lines, const SegmentList& segments,
+                      const LineLooks& looks, gl::ProgramLibrary& programs) {
+    reserve(view, segments.most);
+    {
+        const gl::PassTimer timer(view.timings, "dynamic: project");
+        project(view, lines, segments, looks, programs);
+    }
+    const gl::PassTimer timer(view.timings, "dynamic: bins");
+    sort(segments, programs);
+}
+
+void LineBins::project(const View& view, const MatchedLines& lines, const SegmentList& segments,
+                       const LineLooks& looks, gl::ProgramLibrary& programs) {
+    gl::Program& program = programs.get("dynamic_bin_project", looks.flags());
+    program.set("line_vertices", 0);
+    lines.vertices.bind(0);
+    program.set("line_records", 1);
+    lines.lines.bind(1);
+    program.set("line_segments", 2);
+    segments.segments.bind(2);
+    looks.bind(program, 3);
+    LatticeBase(lines.lattice, view).set(program);
+    program.set("slack", slack_pixels + static_cast<float>(view.terrain_error));
+    program.set("slack_share", slack_share);
+    segments.count.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+    dispatch(program, segments.most, [&](uint32_t first, uint32_t count) {
+        bind_records(1, ends_.buffer(), 16, first, count);
+        bind_records(2, joints_.buffer(), 16, first, count);
+        bind_records(3, spans_.buffer(), 16, first, count);
+        bind_records(4, reaches_.buffer(), 4, first, count);
+    });
+}
+
+void LineBins::run_tiles(const SegmentList& segments, const gl::Flags& flags, gl::ProgramLibrary& programs) {
+    gl::Program& program = programs.get("dynamic_bin_tiles", flags);
+    program.set("segment_spans", 0);
+    spans_.bind(0);
+    program.set("segment_reaches", 1);
+    reaches_.bind(1);
+    program.set("tile_grid", grid_);
+    program.set("run_count", run_count_);
+    program.set("run_length", run_length_);
+    segments.count.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+    places_.buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
+    if (list_)
+        list_.buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 2);
+    dispatch(program, run_count_);
+}
+
+// The list is as long as the counts say, and never shorter.
+void LineBins::sort(const SegmentList& segments, gl::ProgramLibrary& programs) {
+    const auto counts = static_cast<uint32_t>(grid_.x * grid_.y) * run_count_;
+    places_.buffer().clear();
+    run_tiles(segments, {}, programs);
+    sums_.run(places_.buffer(), counts + 1, programs);
+    places_.buffer().read(sizeof(uint32_t) * counts, sizeof(uint32_t), &entry_count_);
+    const long long limit = gl::Context::require_current().info().max_storage_block_bytes;
+    const long long needed = 4LL * entry_count_;
+    if (needed > limit)
+        throw Error(ErrorKind::memory,
+                    "dynamic lines: in this view they fall into " + std::to_string(entry_count_) +
+                        " tiles, more than this driver's buffers hold; give them a smaller width, or a "
+                        "picture of fewer pixels");
+    if (entry_count_ > list_.texels()) {
+        list_ = gl::TextureBuffer();
+        list_ =
+            make_texels(memory_, GL_R32UI, 4,
+                        std::min<size_t>(entry_count_ + entry_count_ / 2, static_cast<size_t>(limit / 4)));
+    }
+    if (entry_count_ > 0)
+        run_tiles(segments, {"FILL"}, programs);
+}
+
+uint64_t LineBins::bytes() const {
+    uint64_t bytes = sums_.bytes() + half_planes_.buffer().bytes();
+    for (const gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_, &places_, &list_})
+        bytes += buffer->buffer().bytes();
+    return bytes;
+}
+
+}  // namespace decalgl

@@ -1,0 +1,85 @@
+// Drawing out of the tiles of the screen.
+#include <utility>
+
+#include "gl/gl.h"
+#include "gl/texture.h"
+#include "technique/dynamic_lines/bins.h"
+#include "technique/dynamic_lines/bins_layout.h"
+
+namespace decalgl {
+
+namespace {
+
+constexpr GLuint half_planes_unit = 8;  // beyond those of frame's own programs
+
+}  // namespace
+
+void LineBins::bind(gl::Program& program, const GBufferView& gbuffer, const LineLooks& looks) const {
+    const std::pair<const char*, const gl::TextureBuffer*> buffers[] = {{"tile_list", &list_},
+                                                                        {"segment_ends", &ends_},
+                                                                        {"segment_joints", &joints_},
+                                                                        {"tile_places", &places_}};
+    int unit = 0;
+    for (const auto& [name, buffer] : buffers) {
+        program.set(name, unit);
+        buffer->bind(static_cast<GLuint>(unit++));
+    }
+    looks.bind(program, 4);
+    program.set("surface_texture", 5);
+    gbuffer.surface->bind(5);
+    if (looks.has_lens()) {
+        program.set("lens_texture", 6);
+        gbuffer.lens->bind(6);
+    }
+    program.set("half_planes", static_cast<int>(half_planes_unit));
+    half_planes_.bind(half_planes_unit);
+    program.set("tile_grid", grid_);
+    program.set("run_count", static_cast<int>(run_count_));
+}
+
+void LineBins::draw_tiles(gl::Flags flags, const GBufferView& gbuffer, const LineLooks& looks,
+                          gl::ProgramLibrary& programs) const {
+    for (const std::string& flag : looks.flags())
+        flags.insert(flag);
+    const bool is_gathered = static_cast<bool>(gbuffer.set_gathered);
+    gl::Program& program = programs.get(is_gathered ? "dynamic_bins_gathered" : "dynamic_bins", flags);
+    program.use();
+    bind(program, gbuffer, looks);
+    if (is_gathered)
+        gbuffer.set_gathered(program);
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void LineBins::draw(const View& view, const GBufferView& gbuffer, const LineLooks& looks,
+                    gl::ProgramLibrary& programs) const {
+    if (view.has_below) {
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    } else {
+        const float nothing[4] = {0.0F, 0.0F, 0.0F, 0.0F};
+        glClearBufferfv(GL_COLOR, 0, nothing);
+    }
+    if (entry_count_ > 0) {
+        gl::Flags flags;
+        const LineSummary& summary = looks.summary();
+        if (view.antialias == Antialias::coverage)
+            flags.insert("COVERAGE");
+        if (summary.has_translucency)
+            flags.insert("TRANSLUCENT");
+        else if (summary.has_one_look)
+            flags.insert("UNION");
+        draw_tiles(std::move(flags), gbuffer, looks, programs);
+    }
+    glDisable(GL_BLEND);
+}
+
+void LineBins::draw_ids(const GBufferView& gbuffer, const LineLooks& looks,
+                        gl::ProgramLibrary& programs) const {
+    const GLuint nothing[4] = {0, 0, 0, 0};
+    glClearBufferuiv(GL_COLOR, 0, nothing);
+    if (entry_count_ > 0)
+        draw_tiles({"IDS"}, gbuffer, looks, programs);
+}
+
+}  // namespace decalgl

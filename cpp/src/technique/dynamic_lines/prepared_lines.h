@@ -1,0 +1,59 @@
+// Prepared dynamic lines: vertices, lines and styles as flat arrays, in draw order from bottom to top.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "decalgl/core/shared_array.h"
+#include "decalgl/technique/dynamic_options.h"
+#include "decalgl/technique/technique.h"
+#include "technique/dynamic_lines/line_buffers.h"
+#include "technique/dynamic_lines/line_lattice.h"
+#include "technique/dynamic_lines/line_styles.h"
+
+namespace decalgl {
+
+// What styles have in common.
+struct LineSummary {
+    bool has_shown = false;
+    bool has_hidden = false;
+    bool has_translucency = false;
+    bool has_one_look = true;  // of all that is shown
+    bool is_joined = false;    // some corner or cap is not round
+    bool has_limits = false;   // or metres
+};
+
+class PreparedLines : public Prepared {
+public:
+    PreparedCounts counts() const override;
+    FeatureReference feature(uint32_t id) const override { return slots[id].feature; }
+    std::vector<FeatureReference> query(const SeenPoint& point) const override;
+    void save(ArchiveWriter& archive, const std::string& prefix) const override;
+    bool shows_anything() const override { return summary.has_shown; }
+    LayerLook look_of(uint32_t layer, size_t features) const override;
+    std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
+                                             const MemoryAccount& memory) const override;
+    std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
+
+    void summarise();
+
+    LineLattice lattice;
+    SharedArray<SourceVertex> vertices;
+    SharedArray<LineRecord> lines;
+    SharedArray<LineStyle> styles;  // one a slot
+    SharedArray<Decal> slots;
+    LineMethod method = LineMethod::automatic;
+    LineWidthRule width_rule = LineWidthRule::screen;
+    double cell = 0.125;
+    uint64_t segments = 0;
+    LineSummary summary;
+};
+
+// Throws Error(memory), Error(unsupported), Error(cancelled).
+std::unique_ptr<PreparedLines> prepare_lines(const TechniqueInput& input, Progress& progress);
+
+// What PreparedLines::save wrote. Throws Error(file) where it does not fit together.
+std::unique_ptr<PreparedLines> open_lines(const ArchiveReader& archive, const std::string& prefix);
+
+}  // namespace decalgl
