@@ -23,8 +23,7 @@ from decalgl import reference
 
 from .gallery.sheet import GAP, enlarged, sheet
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "examples"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples"))
 
 import honolulu
 
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     import geopandas as gpd
     from numpy.typing import NDArray
 
+ROOT = Path(__file__).resolve().parents[1]
 PICTURE = ROOT / "docs" / "images" / "techniques.png"
 SIZE = (408, 240)
 DETAIL = (200, 120, 268, 160)  # left, top, right, bottom: compared with the reference, and shown enlarged

@@ -24,9 +24,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import (
+    clipmap,
     distance_field,
     dynamic,
-    clipmap,
     files,
     indexes,
     interaction,

@@ -50,8 +50,8 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const Rectangle&
 }
 
 void Silhouettes::make_batch_targets() {
-    seen_ = std::make_unique<SeenTargets>(side * columns, side * rows, has_overlay_, OverlayDepth::none,
-                                          memory_);
+    seen_ =
+        std::make_unique<SeenTargets>(side * columns, side * rows, has_overlay_, OverlayDepth::none, memory_);
     composed_ =
         gl::Texture2D::create(memory_, "silhouettes: composed", GL_RGBA8, side * columns, side * rows);
     composed_framebuffer_ = gl::Framebuffer::create("silhouettes", {{GL_COLOR_ATTACHMENT0, &composed_}});

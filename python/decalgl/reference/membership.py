@@ -180,7 +180,7 @@ def _touching(
 
 
 def covered_pairs(touches: Iterable[Touch], count: int) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Of points that strokes cover, ascending keys feature * count + point; gauge over half width, and gauge, of each."""
+    """Of points that strokes cover, ascending: keys feature * count + point, gauge over half width, and gauge."""
     keys, shares, gauges = [np.empty(0, dtype=np.int64)], [np.empty(0)], [np.empty(0)]
     for touch in touches:
         kept = np.flatnonzero(touch.clearance >= 0.0)
