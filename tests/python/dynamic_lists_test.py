@@ -10,7 +10,7 @@ import shapely
 from shapely import LineString
 
 import decalgl as dg
-from decalgl.techniques import Dynamic
+from decalgl import Dynamic
 from small_scenes import MAP, OBLIQUE, SIZE, flat_scene, hilly_scene
 
 LINES = [

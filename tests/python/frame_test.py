@@ -112,6 +112,17 @@ def test_ids_do_not_depend_on_the_antialiasing() -> None:
     np.testing.assert_array_equal(hard.layers, soft.layers)
 
 
+def test_polygons_of_one_colour_are_coloured_where_their_ids_are() -> None:
+    # Along a border, the first crossings of a list alone do not say whether a pixel is inside.
+    scene = flat_scene()
+    scene.add_polygons([box(20, 20, 80, 80)] * 254, color="red")
+    frame = scene.render(MAP, SIZE, antialias="none", background=None)
+    assert "static_decals[ONE_COLOR,RINGS]" in frame.stats.variants
+    is_red = (frame.image[..., :3] == (255, 0, 0)).all(axis=2)
+    assert (is_red == (frame.ids >= 0)).all()
+    assert is_red.any()
+
+
 def test_pick_lists_all_features_topmost_first() -> None:
     scene = layered_scene()
     frame = draw(scene)

@@ -61,7 +61,14 @@ bool is_settled(Walk walk) {
 #if defined(FINDS_COLORS)
     return walk.found.a >= 0.999;
 #elif defined(FINDS_ANY)
-    return walk.found || walk.covered;  // with one colour, all is shown
+    // With one colour all is shown. What a stroke covers stays covered; a ring's next crossing may lead out again.
+#if defined(LINES) && defined(RINGS)
+    return walk.found || (walk.covered && walk.line);
+#elif defined(LINES)
+    return walk.found || walk.covered;
+#else
+    return walk.found;
+#endif
 #else
     return walk.found != no_slot;
 #endif
