@@ -1,4 +1,4 @@
-# make demo | gallery | test | bench | lint | tidy | format | sanitize | clean
+# make demo | gallery | techniques | test | bench | lint | tidy | format | sanitize | clean
 #
 # Each target sets up what it needs and is quick the second time: the stamps in build/stamps say what is done.
 #
@@ -25,7 +25,7 @@ NATIVE_SOURCES = $(shell find cpp cmake python/bindings -type f 2>/dev/null) CMa
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 
-.PHONY: help setup build demo gallery test bench lint tidy format sanitize wheel wheeltest clean distclean
+.PHONY: help setup build demo gallery techniques test bench lint tidy format sanitize wheel wheeltest clean distclean
 
 help:  ## Show the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -39,6 +39,9 @@ demo: build  ## Draw the demo picture
 
 gallery: build  ## Draw the pictures of docs/gallery.md
 	$(BIN)/python -m tools.gallery
+
+techniques: build  ## Draw one scene by each technique, with error and time
+	$(BIN)/python -m tools.side_by_side
 
 test: build  ## Run the C++ and Python tests
 	cmake --build $(BUILD)

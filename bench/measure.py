@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     Times = dict[str, float]
     Measure = Callable[[], Times]
 
-LAYER_PASSES = ("static", "static_bvh", "volume", "clipmap")
+# Of the techniques; what they time inside these is not counted twice.
+LAYER_PASSES = ("static", "static_bvh", "dynamic", "loops", "volume", "clipmap", "distance_field")
 # A picture that costs next to nothing, for what a frame tells about its scene.
 SMALL_PICTURE = (16, 16)
 
