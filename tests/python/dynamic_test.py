@@ -125,7 +125,7 @@ def test_lists_and_bins_agree(corner: str) -> None:
     frames = []
     for method in ("bins", "lists"):
         scene = hilly_scene()
-        technique = dg.techniques.Dynamic(method=method)
+        technique = dg.Dynamic(method=method)
         scene.add_lines([BENDS], width=5, color="red", alpha=0.5, corner=corner, technique=technique)
         frames.append(scene.render(OBLIQUE, SIZE, "none", terrain_error=0.0))
     assert (frames[0].ids == frames[1].ids).all()
@@ -233,7 +233,7 @@ def test_what_is_not_drawn_is_refused(options: dict[str, Any], error: type[Excep
 
 def test_lists_refuse_coverage() -> None:
     scene = flat_scene()
-    scene.add_lines([BENDS], technique=dg.techniques.Dynamic(method="lists"))
+    scene.add_lines([BENDS], technique=dg.Dynamic(method="lists"))
     with pytest.raises(dg.UnsupportedError, match="coverage"):
         scene.render(MAP, SIZE, "coverage")
 

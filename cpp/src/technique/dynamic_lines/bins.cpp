@@ -38,7 +38,7 @@ gl::TextureBuffer make_texels(const MemoryAccount& memory, GLenum format, size_t
 LineBins::LineBins(const MemoryAccount& memory)
     : memory_(memory),
       no_vertices_(gl::VertexArray::create()),
-      half_planes_(gl::TextureBuffer::from(memory, "dynamic: half planes", GL_R32UI, make_half_planes())) {}
+      half_planes_(gl::TextureBuffer::from(memory, "dynamic: half planes", GL_RG32UI, make_half_planes())) {}
 
 void LineBins::reserve(const View& view, uint32_t segments) {
     grid_ = {static_cast<int>(divided(static_cast<uint32_t>(view.width), TILE_SIDE)),
