@@ -70,7 +70,7 @@ def some_lines(arrays: Arrays, share: float) -> dg.FeatureTable:
 def scene_of(ground: dg.Terrain, table: dg.FeatureTable, method: str) -> dg.Scene:
     """The terrain under lines of a constant width on the screen."""
     scene = dg.Scene(ground)
-    technique = dg.techniques.Dynamic(method=method)  # type: ignore[arg-type]
+    technique = dg.Dynamic(method=method)  # type: ignore[arg-type]
     scene.add_lines(table, color=LINE_COLOR, width=WIDTH, technique=technique)
     return scene
 

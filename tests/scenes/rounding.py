@@ -8,6 +8,8 @@ rounds them is right if some way to move them gives its answer.
 from __future__ import annotations
 
 import dataclasses
+import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,12 +17,11 @@ from PIL import Image
 
 import decalgl as dg
 from decalgl import reference as ref
-from judge import SNAP, centres_of, draw, overlay_of, own_surface, surface_below
+from judge import SNAP, centres_of, draw, overlay_of, own_surface, sides, surface_below
 from shapes import with_features
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
     IntArray = NDArray[np.int64]
     Crop = tuple[int, int, int, int]
+
+SHADERS = Path(__file__).resolve().parents[2] / "cpp" / "shaders"
 
 # Ways to round a scene that may explain a pixel.
 TRIES = 48
@@ -169,6 +172,30 @@ def composite_of(view: View, scene: dg.Scene, surface: ref.Surface, nearest: boo
     """The reference's colours (n, 4) of a scene at positions (n,) of the view."""
     slopes = ref.slopes_of(scene, view.camera, view.size, surface)
     return ref.composite(scene, surface.world[..., :2].reshape(-1, 2), slopes, nearest)
+
+
+def sample_offsets() -> FloatArray:
+    """Where in a pixel techniques look that ask 32 places (samples, 2), to the right and up from the centre."""
+    text = (SHADERS / "shared" / "sample_offsets.h").read_text(encoding="utf-8")
+    pairs = re.findall(r"vec2\(([-.\d]+), ([-.\d]+)\)", text)
+    return np.array(pairs, dtype=np.float64)
+
+
+def coverage_of_samples(view: View, frame: dg.Frame, crop: Crop) -> FloatArray:
+    """The reference's mean colour (h, w, 4) of those places, on the pixels' planes.
+
+    What differs from it is a wrong answer at some place, whereas the mean over the whole area differs from it by what
+    so few places can tell.
+    """
+    x0, y0, x1, y1 = crop
+    surface = own_surface(view, frame)[y0:y1, x0:x1].reshape(-1)
+    right, down = sides(view, ref.pixel_centres(crop), surface)
+    total = np.zeros((len(surface.depth), 4))
+    offsets = sample_offsets()
+    for x, y in offsets:
+        there = dataclasses.replace(surface, world=surface.world + x * right - y * down)
+        total += composite_of(view, view.scene, there)
+    return (total / len(offsets)).reshape(y1 - y0, x1 - x0, 4)
 
 
 def write_pictures(
