@@ -58,7 +58,9 @@ class Drawer:
     def draw(self, camera: dg.Camera, detail: dg.Detail) -> Picture:
         """The layer, or with a heat map what stands in its place."""
         self._renderer.set_picture(SIZE, "coverage" if detail.shows == "layers" else "none")
-        self._renderer.set_detail(self._layer, detail)
+        self._renderer.restyle(
+            self._layer, technique=dataclasses.replace(self._layer.technique, detail=detail)
+        )
         self._renderer.update(camera)
         picture: Picture = self._renderer.render().image[..., :3]
         return picture

@@ -227,12 +227,6 @@ void register_renderer(py::module_& module) {
         .def("look", &Renderer::look, py::arg("layer"))
         .def("restyle", &Renderer::restyle, py::arg("looks"), py::call_guard<py::gil_scoped_release>())
         .def("edit", &Renderer::edit, py::arg("edit"), py::call_guard<py::gil_scoped_release>())
-        .def(
-            "tune",
-            [](Renderer& renderer, uint32_t layer, const std::shared_ptr<const TechniqueOptions>& options) {
-                renderer.tune(layer, *options);
-            },
-            py::arg("layer"), py::arg("options"))
         .def("set_lens", &Renderer::set_lens, py::arg("lens"), py::arg("looks"),
              py::call_guard<py::gil_scoped_release>())
         .def("move_lens", &Renderer::move_lens, py::arg("lens"))

@@ -67,11 +67,6 @@ class LayerChanges:
         if self.lens is not None and any(look.layer == index for look in looks):
             self._core.set_lens(_core_lens(self.lens), looks)
 
-    def tune(self, layer: AnyLayer | str | int, options: _core.TechniqueOptions) -> None:
-        """What a technique lets its users choose without preparing anew."""
-        self._core.tune(self._index_of(layer), options)
-        self._any = True
-
     def edit(
         self,
         layer: AnyLayer | str | int,

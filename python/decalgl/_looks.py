@@ -16,7 +16,7 @@ from . import _core
 from ._colors import alpha_values, parse_color
 from ._filters import Columns, rows_meant
 from .coloring import Coloring, resolve_colors
-from .errors import InputError, StyleError, close_matches
+from .errors import InputError, StyleError, UnsupportedError, close_matches
 from .scene import Layer, draw_order_by
 from .techniques import Technique
 
@@ -179,6 +179,11 @@ def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
     decals = dict(state.decals)
     main = "fill" if "fill" in decals else "stroke"
     for role, wanted in _decal_keywords(state, main, given).items():
+        if wanted and role not in decals:
+            raise UnsupportedError(
+                f"Layer {name!r} has no {role} that could look otherwise without preparing: it has none, or its"
+                " technique keeps looks as they were. Use technique='static'."
+            )
         if wanted:
             decals[role] = _restyled_decal(state, decals[role], wanted, where)
     result = replace(state, decals=decals)
@@ -207,6 +212,7 @@ def _technique(state: LayerState, technique: Any) -> Technique:
         )
     if not technique.restyles:
         raise StyleError(f"technique {technique.name!r} has no choices that a restyle could change.")
+    technique.require_change_of(own)
     return technique.bound_to(state.layer.name, state.rows, state.attributes)
 
 

@@ -1,7 +1,9 @@
 """LOOPS: polygons and lines simplified where and as much as the view allows (Amiraghdam et al.).
 
 layer = scene.add_polygons(data, technique=dg.Loops(order="wang_mueller"))
-renderer.set_detail(layer, dg.Detail(screen=1.0))       # at once: nothing is prepared anew
+renderer.restyle(layer, technique=dg.Loops(order="wang_mueller", detail=dg.Detail(screen=1.0)))
+
+The level of detail changes at once: nothing is prepared anew.
 
 docs/techniques/loops.md tells what the parts are.
 """
@@ -10,11 +12,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from . import _core
-from .errors import InputError, close_matches
+from .errors import InputError, StyleError, close_matches
 from .techniques import Technique
 
 if TYPE_CHECKING:
@@ -155,7 +157,7 @@ class Loops(Technique):
         first, with the metres that each removal is off by.
     primitives: of lines and outlines, "tri" (refinement triangles) or "seg" (the segments of all levels).
     bvh: "fitted" (chosen from the data), one of the paper's table 1 by its name, or a `LoopsBvh`.
-    detail: what the layer begins with; `Renderer.set_detail` changes it.
+    detail: what the layer begins with; `Renderer.restyle(layer, technique=)` changes it, for the neighbours too.
 
     Draws even fills, outlines, and round lines of one colour a feature with casings; UnsupportedError for other styles.
     Neighbouring layers of equal options are prepared together, so that borders that they share stay shared.
@@ -163,6 +165,7 @@ class Loops(Technique):
     """
 
     name: ClassVar[str] = "loops"
+    restyles: ClassVar[bool] = True
 
     order: str | RemovalOrder = "douglas_peucker"
     primitives: str = "tri"
@@ -178,6 +181,14 @@ class Loops(Technique):
         if not isinstance(self.detail, Detail):
             raise InputError(f"Loops: detail must be a decalgl.Detail, but it is {self.detail!r}.")
         self.core_options()
+
+    def require_change_of(self, prepared: Technique) -> None:
+        """All but the level of detail must be as it was prepared. Raises StyleError."""
+        if not isinstance(prepared, Loops) or replace(self, detail=prepared.detail) != prepared:
+            raise StyleError(
+                "A restyle of technique 'loops' changes its detail alone; order, primitives and bvh are what the layer"
+                " was prepared with. Write dataclasses.replace(layer.technique, detail=...)."
+            )
 
     def core_options(self) -> _core.LoopsChoice:
         """As the core takes it."""

@@ -24,7 +24,6 @@ from .camera import checked_size
 from .errors import CancelledError, InputError, warn
 from .frame import Frame, PreparedLayer
 from .indexes import BvhIndex, resolve_index
-from .loops import Loops
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     from ._looks import LayerState
     from .camera import Camera
     from .lens import Lens
-    from .loops import Detail
     from .scene import Layer, Scene
 
     AnyLayer: TypeAlias = Layer | PreparedLayer
@@ -245,13 +243,6 @@ class Renderer:
         index="bvh" and for what was opened from a file, which has no vertices; all leave everything as it was.
         """
         return self._changes.edit(layer, add, remove, move, replace, style)
-
-    def set_detail(self, layer: AnyLayer | str | int, detail: Detail) -> None:
-        """Another level of detail for a layer of technique "loops", and the neighbours that it was prepared with.
-
-        The next `render` shows it; nothing is prepared anew. Raises UnsupportedError for other techniques, InputError.
-        """
-        self._changes.tune(layer, Loops(detail=detail).core_options())
 
     @property
     def lens(self) -> Lens | None:

@@ -41,6 +41,9 @@ class Technique:
         """The choices as the core takes them; None where there are none."""
         return None
 
+    def require_change_of(self, prepared: Technique) -> None:
+        """That these choices differ from a layer's only in what needs no preparing. Raises StyleError."""
+
     @property
     def names_widths(self) -> bool:
         """Whether the choices say how wide lines are, so that the layer's width is not read."""

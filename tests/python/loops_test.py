@@ -187,15 +187,19 @@ def prepared(technique: dg.Loops) -> tuple[dg.Renderer, dg.Layer]:
     return drawn, layer
 
 
+def set_detail(drawn: dg.Renderer, layer: dg.Layer, detail: dg.Detail) -> None:
+    drawn.restyle(layer, technique=dataclasses.replace(layer.technique, detail=detail))
+
+
 def test_detail_changes_without_preparing() -> None:
     drawn, layer = prepared(FULL)
     full = drawn.render()
     before, ids = full.image.copy(), full.ids.copy()
-    drawn.set_detail(layer, dg.Detail(screen=None, uniform=2.0))
+    set_detail(drawn, layer, dg.Detail(screen=None, uniform=2.0))
     coarse = drawn.render()
     assert (coarse.ids != ids).any()
     assert coarse.stats.bytes == full.stats.bytes  # nothing new was uploaded
-    drawn.set_detail(layer, FULL.detail)
+    set_detail(drawn, layer, FULL.detail)
     again = drawn.render()
     np.testing.assert_array_equal(again.image, before)
     # Frames of before stay right.
@@ -205,9 +209,9 @@ def test_detail_changes_without_preparing() -> None:
 def test_a_lens_shows_everything_inside_it() -> None:
     drawn, layer = prepared(FULL)
     full = drawn.render().ids.copy()
-    drawn.set_detail(layer, dg.Detail(screen=None, uniform=50.0))
+    set_detail(drawn, layer, dg.Detail(screen=None, uniform=50.0))
     nothing = drawn.render().ids.copy()
-    drawn.set_detail(layer, dg.Detail(screen=None, uniform=50.0, lens=(50.0, 50.0, 20.0)))
+    set_detail(drawn, layer, dg.Detail(screen=None, uniform=50.0, lens=(50.0, 50.0, 20.0)))
     seen = drawn.render().ids
     y, x = (np.mgrid[0:400, 0:400] + 0.5) / 4.0
     inside = np.hypot(x - 50.0, 100.0 - y - 50.0) < 20.0
@@ -222,18 +226,18 @@ def test_details_by_distance_and_a_second_camera() -> None:
     full = drawn.render().ids.copy()
     corner = dg.Camera.look_at((0.0, 0.0, 2.0), (50.0, 50.0, 0.0))
     steps = ((30.0, 0.0), (60.0, 20.0))
-    drawn.set_detail(layer, dg.Detail(screen=None, by_distance=steps, camera=corner))
+    set_detail(drawn, layer, dg.Detail(screen=None, by_distance=steps, camera=corner))
     seen = drawn.render().ids
     y, x = (np.mgrid[0:400, 0:400] + 0.5) / 4.0
     distance = np.hypot(x, 100.0 - y)
     np.testing.assert_array_equal(seen[distance < 30.0], full[distance < 30.0])
     assert (seen != full)[distance > 60.0].mean() > 0.02
     # What lies behind the camera is drawn in full, as nothing there can be off on its screen.
-    drawn.set_detail(layer, dg.Detail(screen=20.0, camera=corner, camera_size=(100, 100)))
+    set_detail(drawn, layer, dg.Detail(screen=20.0, camera=corner, camera_size=(100, 100)))
     watched = drawn.render().ids
     assert (watched != full)[distance > 60.0].any()
     # The least of two bounds counts.
-    drawn.set_detail(layer, dg.Detail(screen=20.0, uniform=0.0, camera=corner, camera_size=(100, 100)))
+    set_detail(drawn, layer, dg.Detail(screen=20.0, uniform=0.0, camera=corner, camera_size=(100, 100)))
     np.testing.assert_array_equal(drawn.render().ids, full)
 
 
@@ -242,7 +246,7 @@ def test_heat_maps_count_primitives() -> None:
     heat = {}
     for shows in ("tested", "active"):
         for uniform in (0.0, 3.0):
-            drawn.set_detail(layer, dg.Detail(screen=None, uniform=uniform, shows=shows, heat_top=40.0))
+            set_detail(drawn, layer, dg.Detail(screen=None, uniform=uniform, shows=shows, heat_top=40.0))
             image = drawn.render().image[..., :3].astype(int)
             heat[shows, uniform] = int((image[..., 0] + image[..., 1]).sum())  # rise with the count
     assert heat["tested", 3.0] > heat["active", 3.0] > 0
@@ -403,5 +407,7 @@ def test_what_it_does_not_draw_is_refused() -> None:
     drawn.preprocess(scene)
     with pytest.raises(dg.UnsupportedError, match="static"):
         drawn.restyle(layer, color="red")
-    with pytest.raises(dg.UnsupportedError, match="'other'"):
-        drawn.set_detail(other, dg.Detail())
+    with pytest.raises(dg.StyleError, match="the layer's own"):
+        drawn.restyle(other, technique=dg.Loops())
+    with pytest.raises(dg.StyleError, match="detail alone"):
+        drawn.restyle(layer, technique=dg.Loops(order="wang_mueller"))

@@ -181,11 +181,6 @@ void Renderer::edit(const LayerEdit& edit) {
     state_->change_scene(before, edited_scene(*before, edit, state_->memory));
 }
 
-void Renderer::tune(uint32_t layer, const TechniqueOptions& options) {
-    const auto before = state_->require_scene("tune");
-    state_->change_scene(before, tuned_scene(*before, layer, options));
-}
-
 void Renderer::set_lens(const Lens& lens, const std::vector<LayerLook>& looks) {
     const auto before = state_->require_scene("look at");
     state_->change_scene(before,

@@ -128,23 +128,6 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
     return changed;
 }
 
-std::shared_ptr<const PreparedScene> tuned_scene(const PreparedScene& scene, uint32_t layer,
-                                                 const TechniqueOptions& options) {
-    require_layer(scene, layer);
-    auto changed = std::make_shared<PreparedScene>(scene);
-    changed->fingerprint = SceneFingerprint(Digest{});
-    for (PreparedPass& pass : changed->passes) {
-        if (!pass.has_layer(layer))
-            continue;
-        pass.prepared = pass.prepared->tuned(options);
-        if (!pass.prepared)
-            throw Error(ErrorKind::unsupported, "layer '" + scene.layers[layer].name +
-                                                    "' is drawn by technique '" + pass.technique +
-                                                    "', which has nothing like that to change");
-    }
-    return changed;
-}
-
 std::shared_ptr<const PreparedScene> scene_with_lens(const PreparedScene& scene,
                                                      std::shared_ptr<const Lens> lens,
                                                      std::vector<LayerLook> looks,

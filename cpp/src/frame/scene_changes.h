@@ -21,10 +21,6 @@ std::shared_ptr<const PreparedScene> restyled_scene(const PreparedScene& scene, 
 std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, const LayerEdit& edit,
                                                   const MemoryAccount& memory);
 
-// With other choices of the technique of a layer, as Prepared::tuned takes them. Throws Error(input), Error(unsupported).
-std::shared_ptr<const PreparedScene> tuned_scene(const PreparedScene& scene, uint32_t layer,
-                                                 const TechniqueOptions& options);
-
 // With a lens that shows these looks, or without one where it is null.
 std::shared_ptr<const PreparedScene> scene_with_lens(const PreparedScene& scene,
                                                      std::shared_ptr<const Lens> lens,

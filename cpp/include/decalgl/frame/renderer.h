@@ -66,9 +66,6 @@ public:
     // Features of a layer added, removed or given another geometry, with an update of what lies around them alone.
     // Throws Error(unsupported) where what is prepared was opened from a file.
     void edit(const LayerEdit& edit);
-    // Other choices of the technique that draws a layer, as far as they need no preparing, for it and the neighbours that
-    // it was prepared with. Throws Error(unsupported) where there are none, Error(input).
-    void tune(uint32_t layer, const TechniqueOptions& options);
     // Other looks inside a lens; what they leave open is as outside.
     void set_lens(const Lens& lens, const std::vector<LayerLook>& looks);
     // Nothing is made or uploaded but the lens itself.

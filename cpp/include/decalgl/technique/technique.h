@@ -118,9 +118,6 @@ public:
     // Error(style), Error(memory).
     virtual std::shared_ptr<const Prepared> edited(const LayerEdit& edit,
                                                    const MemoryAccount& memory) const = 0;
-    // With other choices, as far as they need no preparing: the rest of them is not looked at. Null where the technique
-    // has none.
-    virtual std::shared_ptr<const Prepared> tuned(const TechniqueOptions&) const { return nullptr; }
 };
 
 // What a pixel shows of the picture.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -50,6 +51,7 @@ DetailEye eye_of(const View& view) {
 }
 
 constexpr float no_bound = 3e38F;
+constexpr DecalRole decal_roles[] = {DecalRole::fill, DecalRole::stroke, DecalRole::casing};
 
 }  // namespace
 
@@ -57,25 +59,32 @@ void loops::PreparedLoops::save(ArchiveWriter&, const std::string&) const {
     refuse_files();
 }
 
-LayerLook loops::PreparedLoops::look_of(uint32_t, size_t) const {
-    refuse_changes();
+// Looks stay as they were prepared.
+LayerLook loops::PreparedLoops::look_of(uint32_t layer, size_t) const {
+    LayerLook look;
+    look.layer = layer;
+    return look;
 }
 
-std::shared_ptr<const Prepared> loops::PreparedLoops::restyled(Span<const LayerLook>,
+// With another level of detail; shares the index.
+std::shared_ptr<const Prepared> loops::PreparedLoops::restyled(Span<const LayerLook> looks,
                                                                const MemoryAccount&) const {
-    refuse_changes();
+    LoopsDetail detail = detail_;
+    for (const LayerLook& look : looks) {
+        const bool has_looks = std::any_of(
+            std::begin(decal_roles), std::end(decal_roles),
+            [&](DecalRole role) { return !look.of(role)->colors.empty() || !look.of(role)->widths.empty(); });
+        if (has_looks || !look.draw_order.empty())
+            refuse_changes();
+        if (const auto* choice = dynamic_cast<const LoopsChoice*>(look.options.get()))
+            detail = choice->detail;
+    }
+    validate(detail);
+    return std::make_shared<PreparedLoops>(index_, detail);
 }
 
 std::shared_ptr<const Prepared> loops::PreparedLoops::edited(const LayerEdit&, const MemoryAccount&) const {
     refuse_changes();
-}
-
-std::shared_ptr<const Prepared> loops::PreparedLoops::tuned(const TechniqueOptions& options) const {
-    const auto* choice = dynamic_cast<const LoopsChoice*>(&options);
-    if (choice == nullptr)
-        return nullptr;
-    validate(choice->detail);
-    return std::make_shared<PreparedLoops>(index_, choice->detail);
 }
 
 std::unique_ptr<const Prepared> Loops::open(const ArchiveReader&, const std::string&,

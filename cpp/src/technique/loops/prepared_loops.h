@@ -55,8 +55,6 @@ public:
     // With all details, whatever the view leaves out.
     std::vector<FeatureReference> query(const SeenPoint& point) const override;
     bool shows_anything() const override { return true; }
-    // With another level of detail; shares the index.
-    std::shared_ptr<const Prepared> tuned(const TechniqueOptions& options) const override;
     // These throw Error(unsupported).
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
     LayerLook look_of(uint32_t layer, size_t features) const override;
