@@ -180,12 +180,16 @@ def report(
     out: Annotated[Path, typer.Option(help="The folder to write: index.html, report.json, CSVs, pictures.")],
     size: Annotated[str, typer.Option(help="quick (some minutes, no network) or full (hours).")] = "quick",
     part: Annotated[Words, typer.Option(help="What to measure; may be repeated. All by default.")] = None,
+    step: Annotated[
+        Text,
+        typer.Option(help="Of the scenes: offline, small, medium or large. By default as fits the size."),
+    ] = None,
     redraw: Annotated[bool, typer.Option("--redraw", help="Only make the page of what is there.")] = False,
 ) -> None:
     """Measure error against run time and more, and write a page with plots that opens offline."""
     from .report import command
 
-    page = command.write(out) if redraw else command.make(out, size, part or [])
+    page = command.write(out) if redraw else command.make(out, size, part or [], step)
     messages.print(f"Wrote {page}", markup=False)
 
 

@@ -99,7 +99,7 @@ class Judge:
 
     def _true(self, view: str, pixels: bool) -> Overlay:
         if (view, pixels) not in self._truth:
-            scene = self._map.scene(pixels=pixels)
+            scene = self._map.scene("auto", "auto", pixels)
             camera = self._cameras[view]
             near = seen_part(scene, camera, self._size, self.crop)
             self._truth[view, pixels] = reference.render_overlay(near, camera, self._size, self.crop, SAMPLES)

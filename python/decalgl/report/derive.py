@@ -41,8 +41,10 @@ def bands(ground: dg.Terrain, levels: Iterable[tuple[float, float]]) -> tuple[dg
     heights: list[float] = []
     for low, high in levels:
         pieces, offsets = generator.filled(low, high)
-        polygons += [np.split(points, ends[1:-1]) for points, ends in zip(pieces, offsets, strict=True)]
-        heights += [high] * len(pieces)
+        found = [np.split(points, ends[1:-1]) for points, ends in zip(pieces, offsets, strict=True)]
+        found = [rings for rings in found if _is_area(rings[0])]
+        polygons += found
+        heights += [high] * len(found)
     return table("polygons", polygons), np.asarray(heights)
 
 
@@ -144,6 +146,11 @@ def _contours(ground: dg.Terrain) -> Any:
         line_type=contourpy.LineType.Separate,
         fill_type=contourpy.FillType.OuterOffset,
     )
+
+
+def _is_area(ring: FloatArray) -> bool:
+    """Whether a ring has three distinct points; contours touch single samples."""
+    return len(ring) > 6 or len(np.unique(ring, axis=0)) > 2
 
 
 def _traced(ground: dg.Terrain, labels: NDArray[Any]) -> list[list[FloatArray]]:

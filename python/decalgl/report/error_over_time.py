@@ -11,14 +11,14 @@ from ..bench.measure import LAYER_PASSES, drawing, floor, interleaved, timed
 from ..errors import DecalError
 from . import choices, plots, views
 from .accuracy import Judge
-from .case_studies import CASE_STUDIES, build
+from .case_studies import SCENES, build
 from .part import Figure, Table, byte_count, number
 from .settings import settings
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from .case_studies import Map, Step
+    from .case_studies import Map
     from .part import Context, Row
     from .settings import Setting
 
@@ -32,8 +32,6 @@ ABOUT = (
     " lines leave polygons to static, and are left out where there are no lines."
 )
 TOGETHER = 6  # renderers that are held at once
-SCENES = {"tiny": ("floods",), "quick": ("isolines", "rural", "floods"), "full": tuple(CASE_STUDIES)}
-STEPS: dict[str, Step] = {"tiny": "tiny", "quick": "offline", "full": "small"}
 
 
 def rows(context: Context) -> list[Row]:
@@ -41,7 +39,7 @@ def rows(context: Context) -> list[Row]:
     found: list[Row] = []
     for name in SCENES[context.size]:
         try:
-            drawn = build(name, STEPS[context.size])
+            drawn = build(name, context.step)
         except DecalError as error:
             found.append({"scene": name, "refused": str(error)})
             continue

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import error_over_time
+from . import error_over_time, factors, scenes
 
 if TYPE_CHECKING:
     from .part import Part
 
 PARTS: dict[str, Part] = {
+    "scenes": scenes,
     "error_over_time": error_over_time,
+    "factors": factors,
 }

@@ -151,14 +151,17 @@ def curves(
     y_label: str,
     log: str = "xy",
     marks: bool = True,
+    ticks: Sequence[str] = (),
 ) -> str:
-    """A line for each series of (x, y), as SVG."""
+    """A line for each series of (x, y), as SVG. ticks: what stands at x = 0, 1, 2 ..."""
     figure, axes = new()
     for place, (name, line) in enumerate(series.items()):
         color, marker = look(name, place)
         xs, ys = zip(*line, strict=True)
         axes.plot(xs, ys, color=color, marker=marker if marks else None, ms=5, lw=1.6, label=name)
     _finish(axes, x_label, y_label, log)
+    if ticks:
+        axes.set_xticks(range(len(ticks)), list(ticks))
     if len(series) > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return svg(figure)
