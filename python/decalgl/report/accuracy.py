@@ -150,7 +150,7 @@ def _cut(layer: dg.Layer, low: FloatArray, high: FloatArray) -> dg.Layer:
     least, most = np.full((len(table), 2), np.inf), np.full((len(table), 2), -np.inf)
     np.minimum.at(least, owner, table.coords)
     np.maximum.at(most, owner, table.coords)
-    keep = ((least <= high) & (most >= low)).all(axis=1)
+    keep = np.asarray(((least <= high) & (most >= low)).all(axis=1), np.bool_)
     places = np.cumsum(keep) - 1
     order = layer.draw_order[keep[layer.draw_order]]
     return replace(

@@ -130,7 +130,8 @@ def _jacksboro() -> dg.Terrain:
     from affine import Affine
     from matplotlib.cbook import get_sample_data
 
-    with get_sample_data("jacksboro_fault_dem.npz") as stored:
+    opened: Any = get_sample_data("jacksboro_fault_dem.npz")
+    with opened as stored:
         z = np.asarray(stored["elevation"], np.float32)
         step, west = float(stored["dx"]), float(stored["xmin"])
         north = max(float(stored["ymin"]), float(stored["ymax"]))

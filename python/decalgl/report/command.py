@@ -42,7 +42,7 @@ def make(out: Path, size: str, names: Sequence[str] = (), step: str | None = Non
     unknown = [name for name in names if name not in PARTS]
     if unknown:
         raise errors.InputError(f"There is no --part {unknown[0]!r}. Choose from {', '.join(PARTS)}.")
-    chosen = cast("Size", size)
+    chosen: Size = size
     context = Context(
         size=chosen,
         step=cast("Step", step) if step else STEPS[chosen],

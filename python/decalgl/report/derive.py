@@ -42,7 +42,7 @@ def bands(ground: dg.Terrain, levels: Iterable[tuple[float, float]]) -> tuple[dg
     for low, high in levels:
         pieces, offsets = generator.filled(low, high)
         found = [np.split(points, ends[1:-1]) for points, ends in zip(pieces, offsets, strict=True)]
-        found = [rings for rings in found if _is_area(rings[0])]
+        found = [[ring for ring in rings if _is_area(ring)] for rings in found if _is_area(rings[0])]
         polygons += found
         heights += [high] * len(found)
     return table("polygons", polygons), np.asarray(heights)

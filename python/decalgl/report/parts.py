@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import error_over_time, factors, scenes
+from . import error_over_time, factors, papers, scenes
 
 if TYPE_CHECKING:
     from .part import Part
@@ -13,4 +13,5 @@ PARTS: dict[str, Part] = {
     "scenes": scenes,
     "error_over_time": error_over_time,
     "factors": factors,
+    "papers": papers,
 }

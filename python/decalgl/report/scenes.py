@@ -120,7 +120,10 @@ def _paths(context: Context, drawn: Map) -> list[Row]:
         renderer = dg.Renderer(size, **options.get("renderer", {}))
         renderer.preprocess(drawn.scene("auto", options.get("lines", "auto"), options.get("pixels", False)))
         for path, along in paths.items():
-            times = [_step(renderer, camera, context.runs) for camera in along]
+            rounds = [
+                [_step(renderer, camera) for camera in along] for _ in range(1 + context.chosen(1, 1, 3))
+            ]
+            times = [statistics.median(step) for step in zip(*rounds[1:], strict=True)]
             found.append(
                 {
                     "scene": drawn.name,
@@ -134,11 +137,10 @@ def _paths(context: Context, drawn: Map) -> list[Row]:
     return found
 
 
-def _step(renderer: dg.Renderer, camera: dg.Camera, runs: int) -> float:
-    """Milliseconds of the layers' passes; of a path's step one round less, as its neighbours are rounds too."""
-    measure = drawing(renderer, camera, "none", "step")
-    times = [measure() for _ in range(max(1, runs - 1))]
-    return statistics.median(one["step_frame_ms"] - one["step_ground_ms"] for one in times)
+def _step(renderer: dg.Renderer, camera: dg.Camera) -> float:
+    """Milliseconds of a frame without terrain and composing."""
+    times = drawing(renderer, camera, "none", "step")()
+    return times["step_frame_ms"] - times["step_ground_ms"]
 
 
 def figures(rows: Sequence[Row]) -> list[Figure]:
