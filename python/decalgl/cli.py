@@ -185,12 +185,19 @@ def report(
         typer.Option(help="Of the scenes: offline, small, medium or large. By default as fits the size."),
     ] = None,
     redraw: Annotated[bool, typer.Option("--redraw", help="Only make the page of what is there.")] = False,
+    docs: Annotated[bool, typer.Option("--docs", help="Only take what is there over into the docs.")] = False,
 ) -> None:
     """Measure error against run time and more, and write a page with plots that opens offline."""
     from .report import command
 
-    page = command.write(out) if redraw else command.make(out, size, part or [], step)
-    messages.print(f"Wrote {page}", markup=False)
+    if not docs:
+        page = command.write(out) if redraw else command.make(out, size, part or [], step)
+        messages.print(f"Wrote {page}", markup=False)
+        return
+    from .report.docs import update
+
+    for path in update(out):
+        messages.print(f"Wrote {path}", markup=False)
 
 
 def parse_size(text: str) -> tuple[int, int]:

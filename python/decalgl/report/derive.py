@@ -117,6 +117,13 @@ def chosen(features: dg.FeatureTable, keep: NDArray[np.bool_]) -> dg.FeatureTabl
     )
 
 
+def without_holes(features: dg.FeatureTable) -> dg.FeatureTable:
+    """Polygons of their first rings alone."""
+    first = features.feature_offsets[:-1]
+    rings = [[features.coords[features.part_offsets[at] : features.part_offsets[at + 1]]] for at in first]
+    return table("polygons", rings)
+
+
 def repeated(features: dg.FeatureTable, steps: FloatArray) -> dg.FeatureTable:
     """The features once for each of the steps (n, 2) in metres."""
     count = len(steps)

@@ -161,6 +161,21 @@ def _static_zoom(maps: Maps, nearer: float) -> tuple[dg.Scene, dg.Camera]:
     return _scene(maps, maps.polygons, maps.lines), _zoom(maps, nearer)
 
 
+def _kinds(maps: Maps, what: str) -> tuple[dg.Scene, dg.Camera]:
+    polygons = derive.without_holes(maps.polygons) if what == "exterior rings" else maps.polygons
+    return _scene(maps, polygons, maps.lines if what == "and lines" else None), maps.cameras["oblique"]
+
+
+def _turned(maps: Maps, where: str) -> tuple[dg.Scene, dg.Camera]:
+    """At the map, or at a corner of the ground that nothing lies on."""
+    x0, y0, x1, _ = maps.ground.bounds
+    step = 0.02 * (x1 - x0)
+    empty = dg.Camera.top_down((x0, y0, x0 + step, y0 + step))
+    halves = (maps.polygons, maps.lines)
+    shrunk = (maps.shrunk(table, 0.9) for table in halves)
+    return _scene(maps, *shrunk), maps.cameras["overview"] if where == "in view" else empty
+
+
 def _samples(index: str) -> Callable[[Maps, int], Case]:
     def case(maps: Maps, samples: int) -> Case:
         scene = _scene(maps, maps.polygons, maps.lines)
@@ -235,6 +250,22 @@ FACTORS = (
         ("", "", "+"),
         (1, 2, 4, 8),
         {"published": _samples("bvh"), "ours": _samples("grid")},
+    ),
+    Factor(
+        "kinds of decals",
+        "all decals",
+        "Figure 5.6",
+        ("+", "+", "+"),
+        ("exterior rings", "interior rings too", "and lines"),
+        _both(_kinds),
+    ),
+    Factor(
+        "leaving the view",
+        "all decals",
+        "Figure 5.7",
+        ("", "", "–"),
+        ("in view", "out of view"),
+        _both(_turned),
     ),
     Factor("zooming in", "static decals", "Figure 5.8", ("", "", "–"), (1, 4, 16), _both(_static_zoom)),
     Factor(

@@ -95,7 +95,7 @@ def svg(figure: Figure) -> str:
     drawn = PROLOGUE.sub("", text.getvalue())
     head, rest = drawn.split(">", 1)
     head = re.sub(r' (width|height)="[^"]*"', "", head)
-    return f"{head}>{rest}"
+    return f"{head}>{rest}".rstrip() + "\n"
 
 
 def scatter(

@@ -83,7 +83,7 @@ def _dynamic() -> Iterator[Setting]:
         ("lists, none", dg.Dynamic(method="lists"), "none"),
         ("lists, fxaa", dg.Dynamic(method="lists"), "fxaa"),
     ):
-        quick = name in ("tiles, none", "tiles, coverage", "lists, fxaa")
+        quick = name in ("tiles, none", "tiles, coverage", "lists, none")
         yield Setting("dynamic", name, antialias, "auto", technique, pixels=True, quick=quick)
 
 
