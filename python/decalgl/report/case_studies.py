@@ -342,6 +342,6 @@ CASE_STUDIES = {
 # What a report of each size is made of.
 SCENES: dict[Size, tuple[str, ...]] = {
     "tiny": ("floods",),
-    "quick": ("isolines", "rural", "floods"),
+    "quick": ("floods", "rural"),
     "full": tuple(CASE_STUDIES),
 }

@@ -108,7 +108,7 @@ def _paths(context: Context, drawn: Map) -> list[Row]:
     paths = {
         "zoom": cameras.zoom(target, 1.5 * wide, 0.03 * wide, steps),
         "flight": cameras.flight(drawn.ground.bounds, context.chosen(4, 12, 60)),
-        "flyover": cameras.flyover(drawn.ground, context.chosen(2, 10, 60)),
+        "flyover": cameras.flyover(drawn.ground, context.chosen(2, 12, 60)),
     }
     width, height = context.picture
     size = context.chosen(context.picture, (width // 2, height // 2), context.picture)
