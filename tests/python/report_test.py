@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import json
 from html.parser import HTMLParser
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,12 +15,11 @@ import decalgl as dg
 from decalgl import cli, reference
 from decalgl.bench import comparison
 from decalgl.errors import InputError
-from decalgl.report import case_studies, command, derive, factors, page, parts, plots, views
+from decalgl.report import case_studies, command, derive, docs, factors, page, parts, plots, views
 from decalgl.report.accuracy import seen_part
 from decalgl.report.part import Figure, Table, byte_count, number
 
-if TYPE_CHECKING:
-    from pathlib import Path
+ROOT = Path(__file__).resolve().parents[2]
 
 
 class Links(HTMLParser):
@@ -95,6 +95,14 @@ def test_coverage_is_nearer_to_the_reference_than_no_filter(report: Path) -> Non
     static = {row["setting"]: row for row in rows if row.get("technique") == "static" and "edge_rms" in row}
     assert static["coverage"]["edge_rms"] < 0.03 < static["none"]["edge_rms"]
     assert static["coverage"]["image_rms"] < static["ssaa 4"]["image_rms"] < static["none"]["image_rms"]
+
+
+def test_the_documentation_is_that_of_the_last_report() -> None:
+    results = comparison.read(ROOT / docs.KEPT)
+    for page_name in docs.PAGES:
+        text = (ROOT / page_name).read_text()
+        assert docs.MARKED.search(text), page_name
+        assert docs.fill(text, results) == text, f"{page_name}: run decalgl report --out DIR --docs"
 
 
 @pytest.mark.parametrize("arguments", [{"size": "huge"}, {"names": ["colours"]}, {"step": "vast"}])
