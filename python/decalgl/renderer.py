@@ -298,12 +298,19 @@ class Renderer:
     def render(self, background: Any = "sky") -> Frame:
         """The picture from the camera of the last `update`.
 
+        What has not changed since the last picture is not drawn again: the same view of the same scene costs
+        nothing, and another look of a layer draws the layers alone.
+
         background: "sky", a colour, or None for transparent (alpha 0) where there is no terrain.
         """
         low, high = drawn_background(background)
         if self._updated_layers is self._prepared_layers:
             self._updated_states = self._changes.states
         return Frame(self._core.render(low, high), self._updated_layers, self._updated_states)
+
+    def forget(self) -> None:
+        """Makes the next `update` and `render` begin anew, for those who time them. What is uploaded stays."""
+        self._core.forget()
 
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""

@@ -103,14 +103,12 @@ void Pipeline::draw_overlay(const SeenTargets& seen, Antialias antialias) {
     View view = view_;
     view.antialias = antialias;
     const GBufferView surface = look_through_lens(seen);
-    for (size_t i = 0; i < techniques_.size(); ++i) {
-        if (!scene_->passes[i].shows_anything())
-            continue;
-        const gl::PassTimer timer(&timings_, techniques_[i]->name());
+    for_each_shown([&](size_t, Technique& technique) {
+        const gl::PassTimer timer(&timings_, technique.name());
         seen.overlay_framebuffer.bind();
-        techniques_[i]->draw(view, surface, programs_);
+        technique.draw(view, surface, programs_);
         view.has_below = true;
-    }
+    });
 }
 
 void Pipeline::compose(const SeenTargets& seen, const gl::Framebuffer& target, gl::Flags flags) {
@@ -133,8 +131,8 @@ void Pipeline::compose(const SeenTargets& seen, const gl::Framebuffer& target, g
         program.set("layer_shading", static_cast<float>(scene_->relief.on_layers));
     }
     const auto color = [](const std::array<float, 4>& c) { return glm::vec4(c[0], c[1], c[2], c[3]); };
-    program.set("sky_low", color(request_.background.low));
-    program.set("sky_high", color(request_.background.high));
+    program.set("sky_low", color(background_.low));
+    program.set("sky_high", color(background_.high));
     draw_full_screen();
 }
 

@@ -65,9 +65,8 @@ Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
 }
 
 bool Pipeline::draws(const PreparedScene* scene, const PictureRequest& request) const {
-    return scene_.get() == scene && same_view(request_, request) && request_.antialias == request.antialias &&
-           request_.background.low == request.background.low &&
-           request_.background.high == request.background.high;
+    return is_updated_ && scene_.get() == scene && same_view(request_, request) &&
+           request_.antialias == request.antialias;
 }
 
 void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
@@ -82,16 +81,14 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
     try {
         if (!is_change) {
             // The old scene goes first: both at once may not fit.
-            techniques_.clear();
+            drawers_.clear();
             terrain_.reset();
             scene_.reset();
             terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
             for (const PreparedPass& pass : scene->passes)
-                techniques_.push_back(make_technique(pass.technique));
+                drawers_.push_back({make_technique(pass.technique), nullptr, nullptr});
         }
-        for (size_t i = 0; i < techniques_.size(); ++i)
-            techniques_[i]->upload(scene->passes[i].prepared, scene->passes[i].in_lens,
-                                   {&terrain_->heights(), &scene->terrain}, memory_);
+        upload_layers(*scene);
         gl::check_errors("uploading the scene");
     } catch (...) {
         scene_.reset();
@@ -100,17 +97,41 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
     scene_ = std::move(scene);
 }
 
-UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
-    at_centres_ = nullptr;
-    return update_layers(std::move(scene), request);
+// What was uploaded of a layer stays while it is hidden, for when it is shown again.
+void Pipeline::upload_layers(const PreparedScene& scene) {
+    for (size_t i = 0; i < drawers_.size(); ++i) {
+        const PreparedPass& pass = scene.passes[i];
+        Drawer& drawer = drawers_[i];
+        const bool is_there = drawer.prepared == pass.prepared && drawer.in_lens == pass.in_lens;
+        if (is_there || !pass.shows_anything())
+            continue;
+        drawer.prepared = nullptr;
+        drawer.technique->upload(pass.prepared, pass.in_lens, {&terrain_->heights(), &scene.terrain},
+                                 memory_);
+        drawer.prepared = pass.prepared;
+        drawer.in_lens = pass.in_lens;
+    }
 }
 
-UpdateReport Pipeline::update_layers(std::shared_ptr<const PreparedScene> scene,
-                                     const PictureRequest& request) {
+void Pipeline::forget() {
+    is_updated_ = false;
+    at_centres_ = nullptr;
+}
+
+void Pipeline::forget_costs() {
     timings_.clear();
+    context_->uploads() = {};
+}
+
+UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
+    forget_costs();
+    if (draws(scene.get(), request))
+        return report_;
+    is_updated_ = false;
+    image_.reset();
+    image_charge_ = MemoryCharge();
     const bool shows_surface = at_centres_ != nullptr && scene_ && scene_->shares_ground(*scene) &&
-                               same_view(request_, request) && request_.antialias == request.antialias &&
-                               targets_->needs.has_overlay == has_overlay(*scene);
+                               same_view(request_, request) && request_.antialias == request.antialias;
     if (!shows_surface)
         at_centres_ = nullptr;
     if (scene_ != scene) {
@@ -120,16 +141,18 @@ UpdateReport Pipeline::update_layers(std::shared_ptr<const PreparedScene> scene,
     request_ = request;
     if (!shows_surface)
         set_view();
+    make_targets();
     UpdateReport report;
     report.shader_steps = context_->info().software ? software_shader_steps : 0;
-    counts_.clear();
-    for (const auto& technique : techniques_) {
-        const UpdateReport part = technique->update(view_);
-        counts_.insert(counts_.end(), part.counts.begin(), part.counts.end());
+    for_each_shown([&](size_t, Technique& technique) {
+        const UpdateReport part = technique.update(view_);
+        report.counts.insert(report.counts.end(), part.counts.begin(), part.counts.end());
         report.pieces += part.pieces;
         report.bytes += part.bytes;
         report.longest_walk = std::max(report.longest_walk, part.longest_walk);
-    }
+    });
+    report_ = report;
+    is_updated_ = true;
     return report;
 }
 
@@ -150,9 +173,9 @@ void Pipeline::set_view() {
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     write_view_block();
-    terrain_->set_levels(tiles_);
+    if (request.antialias == Antialias::coverage)  // for the rays of silhouettes
+        terrain_->set_levels(tiles_);
     choose_pieces();
-    make_targets();
 }
 
 void Pipeline::choose_pieces() {
@@ -206,14 +229,15 @@ void Pipeline::make_targets() {
     needs.antialias = request_.antialias;
     needs.multisamples = request_.antialias == Antialias::msaa ? multisamples() : 0;
     needs.has_overlay = has_overlay(*scene_);
-    for (const auto& technique : techniques_) {
-        if (technique->needs_depth(view_))
+    for_each_shown([&](size_t, const Technique& technique) {
+        if (technique.needs_depth(view_))
             needs.overlay_depth = std::max(needs.overlay_depth, OverlayDepth::depth);
-        if (technique->needs_stencil(view_))
+        if (technique.needs_stencil(view_))
             needs.overlay_depth = OverlayDepth::depth_and_stencil;
-    }
+    });
     if (targets_ && targets_->needs == needs)
         return;
+    at_centres_ = nullptr;
     targets_.reset();  // both at once may not fit
     silhouettes_.reset();
     targets_ = std::make_unique<Targets>(needs, memory_);
@@ -258,10 +282,23 @@ GBufferView Pipeline::look_through_lens(const SeenTargets& seen) {
     return view;
 }
 
-std::vector<uint8_t> Pipeline::draw_image() {
+std::shared_ptr<const std::vector<uint8_t>> Pipeline::image(const Background& background) {
+    if (image_ && background_ == background) {
+        forget_costs();
+        return image_;
+    }
+    background_ = background;
+    image_.reset();
+    image_charge_ = MemoryCharge();
     const size_t bytes = 4 * static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
-    const MemoryCharge charge(memory_, "frame: image", bytes);
-    std::vector<uint8_t> image(bytes);
+    image_charge_ = MemoryCharge(memory_, "frame: image", bytes);
+    auto image = std::make_shared<std::vector<uint8_t>>(bytes);
+    draw_image(*image);
+    image_ = image;
+    return image;
+}
+
+void Pipeline::draw_image(std::vector<uint8_t>& image) {
     silhouette_pixels_ = 0;
     for (const Piece& piece : pieces_) {
         draw_picture(piece);
@@ -273,12 +310,11 @@ std::vector<uint8_t> Pipeline::draw_image() {
             redraw_silhouettes(piece, image);
     }
     gl::check_errors("drawing the picture");
-    return image;
 }
 
 std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
-    std::vector<std::vector<uint32_t>> ids(techniques_.size(), std::vector<uint32_t>(pixels, 0));
+    std::vector<std::vector<uint32_t>> ids(drawers_.size(), std::vector<uint32_t>(pixels, 0));
     if (!targets_->needs.has_overlay)
         return ids;
     const gl::Texture2D target =
@@ -290,13 +326,11 @@ std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     for (const Piece& piece : pieces_) {
         draw_centres(piece);
         const GBufferView view = look_through_lens(targets_->seen);
-        for (size_t i = 0; i < techniques_.size(); ++i) {
-            if (!scene_->passes[i].shows_anything())
-                continue;
+        for_each_shown([&](size_t i, Technique& technique) {
             framebuffer.bind();
-            techniques_[i]->draw_ids(view_, view, programs_);
+            technique.draw_ids(view_, view, programs_);
             read_shown(framebuffer, GL_COLOR_ATTACHMENT0, GL_R32UI, piece, ids[i]);
-        }
+        });
     }
     gl::check_errors("drawing ids");
     return ids;

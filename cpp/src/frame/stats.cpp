@@ -23,6 +23,8 @@ FrameStats collect_stats(Pipeline& pipeline, const PreparedScene& scene, const M
     }
     stats.counts = {{"triangles", static_cast<double>(pipeline.triangles())},
                     {"silhouette_pixels", static_cast<double>(pipeline.silhouette_pixels())},
+                    {"uploads", static_cast<double>(pipeline.uploads().count)},
+                    {"uploaded_bytes", static_cast<double>(pipeline.uploads().bytes)},
                     {"features", static_cast<double>(sum.features)},
                     {"segments", static_cast<double>(sum.segments)},
                     {"pieces", static_cast<double>(sum.pieces)},
