@@ -18,7 +18,7 @@ JOBS ?= $(shell nproc)
 # CI treats warnings as errors.
 WERROR := $(if $(CI),ON,OFF)
 
-CPP_FILES = $(shell find cpp tests bench python/bindings -name '*.cpp' -o -name '*.h' 2>/dev/null)
+CPP_FILES = $(shell find cpp tests python/bindings -name '*.cpp' -o -name '*.h' 2>/dev/null)
 # What the installed module is made of; Python files are live in an editable install.
 NATIVE_SOURCES = $(shell find cpp cmake python/bindings -type f 2>/dev/null) CMakeLists.txt python/CMakeLists.txt
 
@@ -49,8 +49,7 @@ test: build  ## Run the C++ and Python tests
 	$(BIN)/python -m pytest
 
 bench: build  ## Measure speed and memory on real data
-	cmake --build $(BUILD)
-	$(BIN)/python -m bench
+	$(BIN)/decalgl bench
 
 lint: setup  ## Check formatting, style and types
 	$(BIN)/ruff check .

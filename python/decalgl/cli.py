@@ -1,12 +1,14 @@
-"""The command line: decalgl render | info | doctor.
+"""The command line: decalgl render | info | doctor | bench.
 
     decalgl render scene.toml -o map.png --view valley
     decalgl render --dem dem.tif --polygons cover.gpkg --column kind --lines roads.gpkg --width 6 -o map.png
     decalgl info dem.tif
     decalgl doctor
+    decalgl bench --compare before.json after.json
 
 Results go to standard output, progress and messages to standard error. Exit codes: 0 done, 1 the doctor found
-nothing that can draw, 2 an error (one line; --debug shows where), 130 cancelled with Ctrl-C.
+nothing that can draw or a comparison something worse, 2 an error (one line; --debug shows where), 130
+cancelled with Ctrl-C.
 """
 
 from __future__ import annotations
@@ -34,6 +36,7 @@ app = typer.Typer(
 messages = Console(stderr=True, soft_wrap=True, highlight=False)
 
 Files = list[Path] | None
+Words = list[str] | None
 Text = str | None
 
 
@@ -147,6 +150,28 @@ def doctor() -> None:
     if not any(record.ok for record in records):
         messages.print("Nothing here can draw.", style="bold red")
         raise typer.Exit(1)
+
+
+@app.command()
+def bench(
+    size: Annotated[Words, typer.Option(help="1M, 5M or 31M; may be repeated. All by default.")] = None,
+    suite: Annotated[Words, typer.Option(help="What to ask; may be repeated. All by default.")] = None,
+    runs: Annotated[int, typer.Option(help="Rounds of which the medians are taken.")] = 5,
+    out: Annotated[Path | None, typer.Option(help="The file of results to write.")] = None,
+    docs: Annotated[bool, typer.Option("--docs", help="Only write the last results into the docs.")] = False,
+    compare: Annotated[
+        tuple[Path, Path] | None, typer.Option(help="Two files of results: what got worse from A to B?")
+    ] = None,
+) -> None:
+    """Measure speed and memory on real data, or compare the results of two runs."""
+    from .bench import command
+
+    if compare is not None:
+        raise typer.Exit(0 if command.compare(*compare) else 1)
+    if docs:
+        command.write_docs()
+    else:
+        command.measure_all(size or [], suite or [], runs, out)
 
 
 def parse_size(text: str) -> tuple[int, int]:
