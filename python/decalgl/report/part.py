@@ -33,7 +33,8 @@ class Context:
     size: how much to measure: "tiny" for tests, "quick" for CI (half a minute a part, no network), "full".
     out: the folder of the page; pictures go into a folder there.
     data: where data is kept that was fetched or derived.
-    picture: (width, height) of the pictures whose times are taken. crop: the size of what is compared with the reference.
+    picture: (width, height) of the pictures whose times are taken. crop: that of what is compared with the
+        reference.
     runs: rounds of which medians are taken.
     say: tells the user what is going on.
     """
