@@ -306,7 +306,9 @@ class Renderer:
         low, high = drawn_background(background)
         if self._updated_layers is self._prepared_layers:
             self._updated_states = self._changes.states
-        return Frame(self._core.render(low, high), self._updated_layers, self._updated_states)
+        frame = self._core.render(low, high)
+        _warn_of_rounding(frame.stats["counts"])
+        return Frame(frame, self._updated_layers, self._updated_states)
 
     def forget(self) -> None:
         """Makes the next `update` and `render` begin anew, for those who time them. What is uploaded stays."""
@@ -315,6 +317,15 @@ class Renderer:
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""
         return self._core.time_floor()
+
+
+def _warn_of_rounding(counts: Mapping[str, float]) -> None:
+    if counts["quantum_px"] > 1.0:
+        warn(
+            f"In the middle of this picture, vertices may be {counts['quantum_px']:.3g} pixels off: over a terrain of"
+            f" this size, the layers are kept to {counts['quantum_m']:.3g} m. Cut the terrain to what you look at, or"
+            " draw finer layers over a terrain of their own."
+        )
 
 
 DEFAULT_OPTIONS = {

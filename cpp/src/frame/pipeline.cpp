@@ -44,12 +44,6 @@ int border_of(Antialias antialias) {
     return antialias == Antialias::fxaa ? fxaa_reach : antialias == Antialias::coverage ? 1 : 0;
 }
 
-// Whether any layer is seen: else there is no overlay, and no texture for one.
-bool has_overlay(const PreparedScene& scene) {
-    return std::any_of(scene.passes.begin(), scene.passes.end(),
-                       [](const PreparedPass& pass) { return pass.shows_anything(); });
-}
-
 }  // namespace
 
 Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
@@ -83,6 +77,7 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
             // The old scene goes first: both at once may not fit.
             drawers_.clear();
             terrain_.reset();
+            targets_.reset();
             scene_.reset();
             terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
             for (const PreparedPass& pass : scene->passes)
@@ -141,6 +136,7 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     request_ = request;
     if (!shows_surface)
         set_view();
+    choose_shown();
     make_targets();
     UpdateReport report;
     report.shader_steps = context_->info().software ? software_shader_steps : 0;
@@ -173,9 +169,22 @@ void Pipeline::set_view() {
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     write_view_block();
-    if (request.antialias == Antialias::coverage)  // for the rays of silhouettes
+    if (request.antialias == Antialias::coverage && !tiles_.empty())  // for the rays of silhouettes
         terrain_->set_levels(tiles_);
     choose_pieces();
+}
+
+bool Pipeline::is_in_view(const MapReach& reach) const {
+    return std::any_of(tiles_.begin(), tiles_.end(), [&](const VisibleTile& visible) {
+        return reach.meets(bounds_of(*visible.tile, scene_->terrain));
+    });
+}
+
+void Pipeline::choose_shown() {
+    shown_.clear();
+    for (size_t i = 0; i < drawers_.size(); ++i)
+        if (scene_->passes[i].shows_anything() && is_in_view(scene_->passes[i].reach))
+            shown_.push_back(i);
 }
 
 void Pipeline::choose_pieces() {
@@ -228,14 +237,15 @@ void Pipeline::make_targets() {
     }
     needs.antialias = request_.antialias;
     needs.multisamples = request_.antialias == Antialias::msaa ? multisamples() : 0;
-    needs.has_overlay = has_overlay(*scene_);
+    needs.has_overlay = shows_layers();
     for_each_shown([&](size_t, const Technique& technique) {
         if (technique.needs_depth(view_))
             needs.overlay_depth = std::max(needs.overlay_depth, OverlayDepth::depth);
         if (technique.needs_stencil(view_))
             needs.overlay_depth = OverlayDepth::depth_and_stencil;
     });
-    if (targets_ && targets_->needs == needs)
+    // An overlay stays for when layers are seen again.
+    if (targets_ && targets_->needs.serve(needs))
         return;
     at_centres_ = nullptr;
     targets_.reset();  // both at once may not fit
@@ -263,7 +273,7 @@ void Pipeline::read_shown(const gl::Framebuffer& framebuffer, GLenum attachment,
 }
 
 bool Pipeline::has_lens() const {
-    return scene_->lens && has_overlay(*scene_);
+    return scene_->lens && shows_layers();
 }
 
 // The G-buffer with the mask of the lens, drawn for the piece that it holds.
@@ -300,22 +310,40 @@ std::shared_ptr<const std::vector<uint8_t>> Pipeline::image(const Background& ba
 
 void Pipeline::draw_image(std::vector<uint8_t>& image) {
     silhouette_pixels_ = 0;
+    quantum_pixels_ = 0.0;
     for (const Piece& piece : pieces_) {
         draw_picture(piece);
         {
             const gl::PassTimer timer(&timings_, "readback");
             read_shown(targets_->picture_framebuffer, GL_COLOR_ATTACHMENT0, GL_RGBA8, piece, image);
+            measure_quantum(piece);
         }
-        if (silhouettes_)
+        if (silhouettes_ && !tiles_.empty())
             redraw_silhouettes(piece, image);
     }
     gl::check_errors("drawing the picture");
 }
 
+void Pipeline::measure_quantum(const Piece& piece) {
+    const int x = request_.width / 2 - piece.shown.x, y = request_.height / 2 - piece.shown.y;
+    if (!shows_layers() || x < 0 || y < 0 || x >= piece.shown.width || y >= piece.shown.height)
+        return;
+    const std::vector<float> middle = gl::read_pixels<float>(
+        targets_->seen.gbuffer.framebuffer, GL_COLOR_ATTACHMENT1, x + piece.shown.x - piece.drawn.x,
+        y + piece.shown.y - piece.drawn.y, 1, 1, gl::transfer_format(GL_RGBA32F), 4);
+    double quantum = 0.0;
+    for (const size_t i : shown_)
+        quantum = std::max(quantum, scene_->passes[i].prepared->counts().quantum);
+    const double depth = view_block_.forward.w + static_cast<double>(middle[2]);
+    const double pixel = pixel_at(request_.camera, request_.height, depth);
+    if (std::isfinite(depth) && pixel > 0.0)
+        quantum_pixels_ = quantum / pixel;
+}
+
 std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
     std::vector<std::vector<uint32_t>> ids(drawers_.size(), std::vector<uint32_t>(pixels, 0));
-    if (!targets_->needs.has_overlay)
+    if (!shows_layers())
         return ids;
     const gl::Texture2D target =
         gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, targets_->needs.width, targets_->needs.height);

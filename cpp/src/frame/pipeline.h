@@ -49,6 +49,8 @@ public:
     const TimingLog& timings() const { return timings_; }
     const gl::Uploads& uploads() const { return context_->uploads(); }
     std::vector<std::string> variants() const { return programs_.variants(); }
+    // How far vertices may have moved, in pixels in the middle of the last picture; 0 where no layer is seen there.
+    double quantum_pixels() const { return quantum_pixels_; }
     uint64_t triangles() const { return triangles_; }
     // Of the last picture: pixels that were drawn anew since more than one surface is seen in them.
     uint64_t silhouette_pixels() const { return silhouette_pixels_; }
@@ -72,14 +74,17 @@ private:
     void upload_layers(const PreparedScene& scene);
     void forget_costs();
     void set_view();
+    bool is_in_view(const MapReach& reach) const;
+    void choose_shown();
+    bool shows_layers() const { return !shown_.empty(); }
     // Calls action(place, technique) for the passes in which anything is to be seen, from bottom to top.
     template <typename Action>
     void for_each_shown(Action action) {
-        for (size_t i = 0; i < drawers_.size(); ++i)
-            if (scene_->passes[i].shows_anything())
-                action(i, *drawers_[i].technique);
+        for (const size_t i : shown_)
+            action(i, *drawers_[i].technique);
     }
     void draw_image(std::vector<uint8_t>& image);
+    void measure_quantum(const Piece& piece);
     void write_view_block();
     bool has_lens() const;
     GBufferView look_through_lens(const SeenTargets& seen);
@@ -115,6 +120,7 @@ private:
     std::shared_ptr<const PreparedScene> scene_;
     std::unique_ptr<TerrainMesh> terrain_;
     std::vector<Drawer> drawers_;  // one a pass
+    std::vector<size_t> shown_;    // the passes that show anything in this view, from bottom to top
 
     PictureRequest request_;
     bool is_updated_ = false;  // to scene_ and request_
@@ -130,6 +136,7 @@ private:
     std::vector<Piece> pieces_;
     uint64_t triangles_ = 0;
     uint64_t silhouette_pixels_ = 0;
+    double quantum_pixels_ = 0.0;
 
     LensMask lens_mask_;
     LensMask gathered_lens_mask_;

@@ -215,8 +215,8 @@ UpdateReport Renderer::update(const Camera& camera) {
     }
     const gl::CurrentScope current(state.pipeline->context());
     const RendererOptions& options = state.options;
-    const PictureRequest request{
-        camera, options.width, options.height, options.antialias, options.terrain_error};
+    const PictureRequest request{camera, options.width, options.height, options.antialias,
+                                 options.terrain_error};
     const UpdateReport report = state.pipeline->update(scene, request);
     state.request = request;
     state.set_updated_scene(scene);

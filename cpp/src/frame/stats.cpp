@@ -29,7 +29,8 @@ FrameStats collect_stats(Pipeline& pipeline, const PreparedScene& scene, const M
                     {"segments", static_cast<double>(sum.segments)},
                     {"pieces", static_cast<double>(sum.pieces)},
                     {"prepared_bytes", static_cast<double>(sum.bytes)},
-                    {"quantum_m", sum.quantum}};
+                    {"quantum_m", sum.quantum},
+                    {"quantum_px", pipeline.quantum_pixels()}};
     stats.counts.insert(stats.counts.end(), pipeline.counts().begin(), pipeline.counts().end());
     return stats;
 }

@@ -49,16 +49,19 @@ class Case:
     exaggeration: float = 1.0
     looks: dict[str, Any] = field(default_factory=dict)
 
-    def scene(self, technique: Technique, *, follows_view: bool, one_color: bool, kinds: str) -> Scene:
+    def scene(
+        self, technique: Technique, *, follows_view: bool, one_look: bool, kinds: str, looks: dict[str, Any]
+    ) -> Scene:
         """The case drawn by a technique.
 
-        follows_view: lines have widths on the screen, as wide as theirs in the middle of the picture. kinds: "both"
-        or "lines".
+        follows_view: lines have widths on the screen, as wide as theirs in the middle of the picture. one_look: all
+        are opaque and of one colour. kinds: "both" or "lines". looks: further keywords of lines, unless the case has
+        some.
         """
         scene = Scene(self.terrain, self.exaggeration, BLACK)
         if self.polygons and kinds == "both":
             table = _table("polygons", self.polygons)
-            scene.add_polygons(table, color=self._tints(len(table), one_color), technique=technique)
+            scene.add_polygons(table, color=self._tints(len(table), one_look), technique=technique)
         if self.lines:
             table = _table("lines", self.lines)
             width = {"width": self.width, "width_units": "m"}
@@ -66,14 +69,16 @@ class Case:
                 width = {"width": self.width / self.pixel, "width_units": "px"}
             scene.add_lines(
                 table,
-                color=self._tints(len(table), one_color),
+                color=self._tints(len(table), one_look),
                 technique=technique,
-                **{**width, **self.looks},
+                **{**width, **(self.looks or looks)},
             )
         return scene
 
-    def _tints(self, count: int, one_color: bool) -> list[tuple[float, ...]]:
-        return [(*COLORS[0 if one_color else i % len(COLORS)], self.alpha) for i in range(count)]
+    def _tints(self, count: int, one_look: bool) -> list[tuple[float, ...]]:
+        if one_look:
+            return [(*COLORS[0], 1.0)] * count
+        return [(*COLORS[i % len(COLORS)], self.alpha) for i in range(count)]
 
 
 @dataclass(frozen=True)
@@ -145,11 +150,13 @@ def _cells(half: float, count: int, x: float = 0.0, y: float = 0.0) -> Rings:
 
 def _walks(reach: float, step: float, count: int, x: float = 0.0, y: float = 0.0) -> Rings:
     generator = np.random.default_rng(11)
+    middle = np.array([x, y])
     found: Rings = []
     for _ in range(count):
         heading = generator.uniform(0.0, 2.0 * np.pi) + np.cumsum(generator.normal(0.0, 0.5, 12))
         moves = step * np.stack([np.cos(heading), np.sin(heading)], axis=1)
-        found.append([np.cumsum(np.concatenate([generator.uniform(-reach, reach, (1, 2)), moves]), axis=0) + (x, y)])
+        start = middle + generator.uniform(-reach, reach, (1, 2))
+        found.append([np.cumsum(np.concatenate([start, moves]), axis=0)])
     return found
 
 
@@ -164,9 +171,7 @@ def _circle(radius: float, corners: int, turn: float = 0.0) -> FloatArray:
 def _coordinates(value: float) -> Case:
     x, y = value, -0.93 * value
     camera, pixel = _seen(90.0, 150.0, target=(x, y, 0.0))
-    return Case(
-        _ground(100.0, 8.0, x, y), camera, pixel, _cells(40.0, 5, x, y), _walks(30.0, 5.0, 6, x, y)
-    )
+    return Case(_ground(100.0, 8.0, x, y), camera, pixel, _cells(40.0, 5, x, y), _walks(30.0, 5.0, 6, x, y))
 
 
 def _feature_size(value: float) -> Case:
@@ -180,7 +185,7 @@ def _feature_size(value: float) -> Case:
 def _vees(value: float) -> Rings:
     turned = math.radians(value)
     arm = np.array([50.0 * math.cos(turned), 50.0 * math.sin(turned)])
-    return [[np.array([(50.0, y), (0.0, y), (arm[0], y + arm[1])]) + (-20.0, 0.0)] for y in (-25.3, 4.7)]
+    return [[np.array([(30.0, y), (-20.0, y), (arm[0] - 20.0, y + arm[1])])] for y in (-25.3, 4.7)]
 
 
 def _angle(value: float) -> Case:
@@ -228,24 +233,31 @@ def _slope(value: float) -> Case:
     heights = np.tile(steep * x, (21, 1)).astype(np.float32)
     height = 60.0 * math.hypot(1.0, steep)
     camera, pixel = _seen(height, 2.0 * height, 35.0, azimuth=250.0)
-    return Case(Terrain(heights, -50.0, 50.0, 5.0, 5.0), camera, pixel, _cells(30.0, 5), _walks(25.0, 4.0, 5), 1.5)
+    return Case(
+        Terrain(heights, -50.0, 50.0, 5.0, 5.0), camera, pixel, _cells(30.0, 5), _walks(25.0, 4.0, 5), 1.5
+    )
 
 
 def _exaggeration(value: float) -> Case:
     height = 90.0 + 12.0 * value
     camera, pixel = _seen(height, 2.0 * height, 40.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, _cells(60.0, 5), _walks(50.0, 6.0, 6), 2.0, exaggeration=value)
+    return Case(
+        _ground(100.0, 8.0), camera, pixel, _cells(60.0, 5), _walks(50.0, 6.0, 6), 2.0, exaggeration=value
+    )
 
 
 def _overlap(value: float) -> Case:
     count = round(value)
     generator = np.random.default_rng(13)
     places = generator.uniform(-6.0, 6.0, (count, 2))
-    triangles: Rings = [[_circle(22.0, 3, turn) + place] for turn, place in zip(generator.uniform(0, 6, count), places, strict=True)]  # fmt: skip
+    turns = generator.uniform(0.0, 6.0, count)
+    triangles: Rings = [[_circle(22.0, 3, turn) + place] for turn, place in zip(turns, places, strict=True)]
     ends = generator.uniform(-40.0, 40.0, (count, 2))
     strokes: Rings = [[np.stack([-end, end])] for end in ends]
     camera, pixel = _seen(90.0, 150.0, 70.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, triangles, strokes, 3.0, alpha=max(min(0.5, 4.0 / count), 0.02))
+    return Case(
+        _ground(100.0, 8.0), camera, pixel, triangles, strokes, 3.0, alpha=max(min(0.5, 4.0 / count), 0.02)
+    )
 
 
 def _nesting(value: float) -> Case:
@@ -278,19 +290,23 @@ def _sliver(value: float) -> Case:
 def _vertices(value: float) -> Case:
     count = round(value)
     generator = np.random.default_rng(17)
-    radius = 25.0 + 15.0 * generator.random((count, 1)) * min(1.0, 300.0 / count) + 5.0 * np.sin(
-        np.linspace(0.0, 40.0 * np.pi, count)
-    )[:, None]
+    radius = (
+        25.0
+        + 15.0 * generator.random((count, 1)) * min(1.0, 300.0 / count)
+        + 5.0 * np.sin(np.linspace(0.0, 40.0 * np.pi, count))[:, None]
+    )
     ring = radius * _circle(1.0, count)
     camera, pixel = _seen(100.0, 150.0, 65.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, [[ring]], [[np.concatenate([ring * 1.2, ring[:1] * 1.2])]], 1.0)
+    return Case(
+        _ground(100.0, 8.0), camera, pixel, [[ring]], [[np.concatenate([ring * 1.2, ring[:1] * 1.2])]], 1.0
+    )
 
 
 def _holes(value: float) -> Case:
     side = max(1, round(math.sqrt(value)))
     step = 80.0 / side
     places = (np.arange(side) + 0.5) * step - 40.0
-    holes = [_circle(0.35 * step, 5, 0.2) + (x, y) for x in places for y in places]
+    holes = [_circle(0.35 * step, 5, 0.2) + np.array([x, y]) for x in places for y in places]
     camera, pixel = _seen(100.0, 150.0, 70.0)
     return Case(_ground(100.0, 8.0), camera, pixel, [[_circle(60.0, 8), *holes]])
 
@@ -300,7 +316,7 @@ def _powers(first: int, last: int, step: int = 1) -> tuple[float, ...]:
 
 
 EXTREMES = (
-    Extreme("coordinates", "magnitude of coordinates", "m", _powers(0, 9), _powers(1, 9, 4), _coordinates),
+    Extreme("coordinates", "magnitude of coordinates", "m", _powers(0, 9), (1e1, 1e8, 1e9), _coordinates),
     Extreme(
         "feature size", "ground ÷ feature", "", _powers(1, 10), _powers(1, 9, 4), _feature_size
     ),
