@@ -1,10 +1,11 @@
-"""The command line: decalgl render | info | doctor | bench.
+"""The command line: decalgl render | info | doctor | bench | report.
 
     decalgl render scene.toml -o map.png --view valley
     decalgl render --dem dem.tif --polygons cover.gpkg --column kind --lines roads.gpkg --width 6 -o map.png
     decalgl info dem.tif
     decalgl doctor
     decalgl bench --compare before.json after.json
+    decalgl report --out build/report --size quick
 
 Results go to standard output, progress and messages to standard error. Exit codes: 0 done, 1 the doctor found
 nothing that can draw or a comparison something worse, 2 an error (one line; --debug shows where), 130
@@ -172,6 +173,20 @@ def bench(
         command.write_docs()
     else:
         command.measure_all(size or [], suite or [], runs, out)
+
+
+@app.command()
+def report(
+    out: Annotated[Path, typer.Option(help="The folder to write: index.html, report.json, CSVs, pictures.")],
+    size: Annotated[str, typer.Option(help="quick (some minutes, no network) or full (hours).")] = "quick",
+    part: Annotated[Words, typer.Option(help="What to measure; may be repeated. All by default.")] = None,
+    redraw: Annotated[bool, typer.Option("--redraw", help="Only make the page of what is there.")] = False,
+) -> None:
+    """Measure error against run time and more, and write a page with plots that opens offline."""
+    from .report import command
+
+    page = command.write(out) if redraw else command.make(out, size, part or [])
+    messages.print(f"Wrote {page}", markup=False)
 
 
 def parse_size(text: str) -> tuple[int, int]:

@@ -41,15 +41,15 @@ def fixed_views(ground: dg.Terrain) -> dict[str, dg.Camera]:
 
 def worst(ground: dg.Terrain, points: Points) -> dg.Camera:
     """Onto the fullest sixteenth of the fullest 1/256 of the map, about 2 km across."""
-    block = _fullest(points, ground.bounds, 16)
-    x0, y0, x1, y1 = _fullest(points, block, 4)
-    return _showing(_on_ground(ground, (x0 + x1) / 2, (y0 + y1) / 2), WORST_WIDTH, elevation=45)
+    block = fullest(points, ground.bounds, 16)
+    x0, y0, x1, y1 = fullest(points, block, 4)
+    return _showing(on_ground(ground, (x0 + x1) / 2, (y0 + y1) / 2), WORST_WIDTH, elevation=45)
 
 
 def interior(ground: dg.Terrain, points: Points) -> dg.Camera:
     """Onto the place that is farthest from all vertices, holes and rims, and none of them in the picture."""
     x, y, room = _emptiest(ground, points)
-    return _showing(_on_ground(ground, x, y), min(WORST_WIDTH, room / 2.0), elevation=45)
+    return _showing(on_ground(ground, x, y), min(WORST_WIDTH, room / 2.0), elevation=45)
 
 
 def _showing(target: tuple[float, float, float], width: float, elevation: float) -> dg.Camera:
@@ -58,7 +58,7 @@ def _showing(target: tuple[float, float, float], width: float, elevation: float)
     return dg.Camera.orbit(target, distance=distance, azimuth=200, elevation=elevation, fov=FOV)
 
 
-def _on_ground(ground: dg.Terrain, x: float, y: float) -> tuple[float, float, float]:
+def on_ground(ground: dg.Terrain, x: float, y: float) -> tuple[float, float, float]:
     row, column = round((ground.y0 - y) / ground.dy), round((x - ground.x0) / ground.dx)
     return (x, y, float(np.nan_to_num(ground.z[row, column])))
 
@@ -69,7 +69,7 @@ def _counts(points: Points, bounds: Bounds, divisions: int) -> NDArray[np.int64]
     return np.asarray(counts, np.int64)
 
 
-def _fullest(points: Points, bounds: Bounds, divisions: int) -> Bounds:
+def fullest(points: Points, bounds: Bounds, divisions: int) -> Bounds:
     """The box with the most points of divisions x divisions."""
     counts = _counts(points, bounds, divisions)
     column, row = np.unravel_index(np.argmax(counts), counts.shape)

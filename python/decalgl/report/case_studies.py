@@ -40,6 +40,7 @@ Step: TypeAlias = Literal["tiny", "offline", "small", "medium", "large"]
 WINDOWS: dict[Step, int] = {"tiny": 60, "offline": 300, "small": 800, "medium": 1800, "large": 3500}
 COPIES: dict[Step, int] = {"tiny": 1, "offline": 1, "small": 2, "medium": 8, "large": 24}
 OFFLINE: tuple[Step, ...] = ("tiny", "offline")
+LINES = np.linspace(0.02, 0.98, 17)  # shares of the height range at which isolines run
 GROUND = "#ece8df"
 PIXELS = 2.0  # the width of lines where it is one on the screen
 
@@ -70,6 +71,11 @@ class Map:
     name: str
     ground: dg.Terrain
     parts: tuple[Part, ...]
+
+    @property
+    def has_lines(self) -> bool:
+        """Whether a layer is of lines, beside outlines."""
+        return any(part.kind == "lines" for part in self.parts)
 
     def scene(
         self,
@@ -162,7 +168,10 @@ def _floods(step: Step) -> tuple[dg.Terrain, list[Part]]:
     edges = np.nanquantile(low.z, (0.0, 0.12, 0.24, 0.36))
     table, heights = derive.bands(low, itertools.pairwise(edges.tolist()))
     colors = np.array(["#d7302c", "#ef8a2c", "#f2d544"])[np.searchsorted(edges[1:], heights)]
-    return ground, [Part("polygons", table, {"color": list(colors)})]
+    span = float(np.nanmax(ground.z) - np.nanmin(ground.z))
+    lines = derive.contour_lines(ground, [float(np.nanmin(ground.z)) + span * share for share in LINES])
+    looks = {"color": "#7a5a36", "width": 0.3 * ground.dx, "width_units": "m"}
+    return ground, [Part("polygons", table, {"color": list(colors)}), Part("lines", lines, looks)]
 
 
 def _sewers(step: Step) -> tuple[dg.Terrain, list[Part]]:

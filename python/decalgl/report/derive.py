@@ -36,15 +36,7 @@ class MissingLibraryError(DecalError, ImportError):
 
 def bands(ground: dg.Terrain, levels: Iterable[tuple[float, float]]) -> tuple[dg.FeatureTable, FloatArray]:
     """Areas between pairs of heights, each connected piece a polygon with its holes; the upper height of each."""
-    import contourpy
-
-    rows, columns = ground.shape
-    generator: Any = contourpy.contour_generator(
-        x=ground.x0 + ground.dx * np.arange(columns),
-        y=ground.y0 - ground.dy * np.arange(rows),
-        z=np.ma.masked_invalid(ground.z),
-        fill_type=contourpy.FillType.OuterOffset,
-    )
+    generator = _contours(ground)
     polygons: list[list[FloatArray]] = []
     heights: list[float] = []
     for low, high in levels:
@@ -52,6 +44,12 @@ def bands(ground: dg.Terrain, levels: Iterable[tuple[float, float]]) -> tuple[dg
         polygons += [np.split(points, ends[1:-1]) for points, ends in zip(pieces, offsets, strict=True)]
         heights += [high] * len(pieces)
     return table("polygons", polygons), np.asarray(heights)
+
+
+def contour_lines(ground: dg.Terrain, heights: Iterable[float]) -> dg.FeatureTable:
+    """Lines along which the ground is as high as one of the heights."""
+    generator = _contours(ground)
+    return table("lines", [[line] for height in heights for line in generator.lines(height)])
 
 
 def catchments(ground: dg.Terrain, samples: int) -> tuple[dg.FeatureTable, FloatArray]:
@@ -133,6 +131,19 @@ def repeated(features: dg.FeatureTable, steps: FloatArray) -> dg.FeatureTable:
 def _tiled(offsets: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     each = offsets[1:][None] + offsets[-1] * np.arange(count)[:, None]
     return np.append(0, each.reshape(-1))
+
+
+def _contours(ground: dg.Terrain) -> Any:
+    import contourpy
+
+    rows, columns = ground.shape
+    return contourpy.contour_generator(
+        x=ground.x0 + ground.dx * np.arange(columns),
+        y=ground.y0 - ground.dy * np.arange(rows),
+        z=np.ma.masked_invalid(ground.z),
+        line_type=contourpy.LineType.Separate,
+        fill_type=contourpy.FillType.OuterOffset,
+    )
 
 
 def _traced(ground: dg.Terrain, labels: NDArray[Any]) -> list[list[FloatArray]]:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import error_over_time, factors, scenes
+from . import error_over_time
 
 if TYPE_CHECKING:
     from .part import Part
 
 PARTS: dict[str, Part] = {
-    "scenes": scenes,
     "error_over_time": error_over_time,
-    "factors": factors,
 }
