@@ -81,7 +81,7 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
             scene_.reset();
             terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
             for (const PreparedPass& pass : scene->passes)
-                drawers_.push_back({make_technique(pass.technique), nullptr, nullptr});
+                drawers_.push_back({make_technique(pass.technique), nullptr, nullptr, false, {}});
         }
         upload_layers(*scene);
         gl::check_errors("uploading the scene");
@@ -101,6 +101,7 @@ void Pipeline::upload_layers(const PreparedScene& scene) {
         if (is_there || !pass.shows_anything())
             continue;
         drawer.prepared = nullptr;
+        drawer.is_updated = false;
         drawer.technique->upload(pass.prepared, pass.in_lens, {&terrain_->heights(), &scene.terrain},
                                  memory_);
         drawer.prepared = pass.prepared;
@@ -110,7 +111,7 @@ void Pipeline::upload_layers(const PreparedScene& scene) {
 
 void Pipeline::forget() {
     is_updated_ = false;
-    at_centres_ = nullptr;
+    at_centres_ = nullptr;  // so that the view is set anew
 }
 
 void Pipeline::forget_costs() {
@@ -140,8 +141,11 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     make_targets();
     UpdateReport report;
     report.shader_steps = context_->info().software ? software_shader_steps : 0;
-    for_each_shown([&](size_t, Technique& technique) {
-        const UpdateReport part = technique.update(view_);
+    for_each_shown([&](size_t i, Technique& technique) {
+        if (!drawers_[i].is_updated)
+            drawers_[i].report = technique.update(view_);
+        drawers_[i].is_updated = true;
+        const UpdateReport& part = drawers_[i].report;
         report.counts.insert(report.counts.end(), part.counts.begin(), part.counts.end());
         report.pieces += part.pieces;
         report.bytes += part.bytes;
@@ -154,6 +158,8 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
 
 void Pipeline::set_view() {
     const PictureRequest& request = request_;
+    for (Drawer& drawer : drawers_)
+        drawer.is_updated = false;
     tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
                           request.terrain_error);
     view_ = {request.width,

@@ -68,6 +68,8 @@ private:
         std::unique_ptr<Technique> technique;
         std::shared_ptr<const Prepared> prepared;
         std::shared_ptr<const Prepared> in_lens;
+        bool is_updated = false;  // to what it was given, and to the view
+        UpdateReport report;
     };
 
     void upload(std::shared_ptr<const PreparedScene> scene);

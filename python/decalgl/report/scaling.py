@@ -33,6 +33,7 @@ GROUND_PASSES = ("upload", "terrain", "compose", "readback")
 LINE = 100  # segments
 STEP = 40.0  # metres
 HALF = 10_000.0
+UNKNOWN_SPREAD = 0.1  # of times of one round, as a share
 
 
 @dataclass(frozen=True)
@@ -309,7 +310,8 @@ def _series(rows: Sequence[Row], sweep: str, name: str) -> dict[str, list[tuple[
     found: dict[str, list[tuple[float, float, float]]] = {}
     for row in rows:
         if row["sweep"] == sweep and row.get(name, 0.0) > 0.0:
-            point = (row["count"], row[name], row.get(f"{name}_spread", 0.0))
+            unknown = UNKNOWN_SPREAD if name.endswith("_ms") else 0.0
+            point = (row["count"], row[name], row.get(f"{name}_spread", unknown))
             found.setdefault(row["technique"], []).append(point)
     return found
 
