@@ -322,9 +322,9 @@ class Renderer:
 def _warn_of_rounding(counts: Mapping[str, float]) -> None:
     if counts["quantum_px"] > 1.0:
         warn(
-            f"In the middle of this picture, vertices may be {counts['quantum_px']:.3g} pixels off: over a terrain of"
-            f" this size, the layers are kept to {counts['quantum_m']:.3g} m. Cut the terrain to what you look at, or"
-            " draw finer layers over a terrain of their own."
+            f"In the middle of this picture, layers may be {counts['quantum_px']:.3g} pixels off: over a terrain of"
+            f" this size, vertices are kept to {counts['quantum_m']:.3g} m, and positions to micrometres at best. Cut"
+            " the terrain to what you look at, or stay farther away."
         )
 
 

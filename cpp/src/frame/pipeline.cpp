@@ -337,7 +337,8 @@ void Pipeline::measure_quantum(const Piece& piece) {
     const std::vector<float> middle = gl::read_pixels<float>(
         targets_->seen.gbuffer.framebuffer, GL_COLOR_ATTACHMENT1, x + piece.shown.x - piece.drawn.x,
         y + piece.shown.y - piece.drawn.y, 1, 1, gl::transfer_format(GL_RGBA32F), 4);
-    double quantum = 0.0;
+    // Positions are offsets in blocks, in float32.
+    double quantum = std::ldexp(scene_->positions.block_size, -23);
     for (const size_t i : shown_)
         quantum = std::max(quantum, scene_->passes[i].prepared->counts().quantum);
     const double depth = view_block_.forward.w + static_cast<double>(middle[2]);

@@ -49,7 +49,8 @@ public:
     const TimingLog& timings() const { return timings_; }
     const gl::Uploads& uploads() const { return context_->uploads(); }
     std::vector<std::string> variants() const { return programs_.variants(); }
-    // How far vertices may have moved, in pixels in the middle of the last picture; 0 where no layer is seen there.
+    // How far vertices may have moved, or positions may be off, in pixels in the middle of the last picture; 0 where no
+    // layer is in view or the sky is seen there.
     double quantum_pixels() const { return quantum_pixels_; }
     uint64_t triangles() const { return triangles_; }
     // Of the last picture: pixels that were drawn anew since more than one surface is seen in them.
