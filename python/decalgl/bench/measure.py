@@ -85,8 +85,9 @@ def floor(renderer: dg.Renderer) -> Measure:
 
 
 def draw(renderer: dg.Renderer, camera: dg.Camera, antialias: str) -> dg.Frame:
-    """A frame of a renderer's scene, in the size that it has."""
+    """A frame of a renderer's scene, in the size that it has, drawn anew."""
     renderer.set_picture(renderer.size, antialias)
+    renderer.forget()
     renderer.update(camera)
     return renderer.render()
 
