@@ -15,34 +15,34 @@ const int most_lines = 8;
 
 // Topmost first.
 struct Lines {
-    uint slots[most_lines];
+    uint ranks[most_lines];
     vec4 colors[most_lines];  // premultiplied, and by the coverage
     float distance2;
 };
 
 void keep(inout Lines lines, Candidate line) {
 #ifdef NEAREST
-    bool ties = line.distance2 == lines.distance2 && line.slot < lines.slots[0];
+    bool ties = line.distance2 == lines.distance2 && line.rank < lines.ranks[0];
     if (line.covers && (line.distance2 < lines.distance2 || ties)) {
-        lines.slots[0] = line.slot;
+        lines.ranks[0] = line.rank;
         lines.colors[0] = line.color;
         lines.distance2 = line.distance2;
     }
 #else
     // The line, and whatever it takes the place of, sinks to where it belongs: by constant indices, which leave the
     // arrays in registers.
-    uint slot = line.covers ? line.slot : no_line;
+    uint rank = line.covers ? line.rank : no_line;
     vec4 color = line.color;
     for (int i = 0; i < most_lines; ++i) {
-        uint other = lines.slots[i];
+        uint other = lines.ranks[i];
         vec4 below = lines.colors[i];
-        bool again = slot == other && slot != no_line;
+        bool again = rank == other && rank != no_line;
         // Of a line's segments the one that covers most of the pixel.
-        bool takes = slot < other || (again && color.a > below.a);
-        lines.slots[i] = takes ? slot : other;
+        bool takes = rank < other || (again && color.a > below.a);
+        lines.ranks[i] = takes ? rank : other;
         lines.colors[i] = takes ? color : below;
         color = takes ? below : color;
-        slot = again ? no_line : takes ? other : slot;
+        rank = again ? no_line : takes ? other : rank;
     }
 #endif
 }
@@ -63,7 +63,7 @@ int next_object(inout Search search) {
 vec4 lines_at(ivec2 point, mat2 foot) {
     Lines lines;
     for (int i = 0; i < most_lines; ++i) {
-        lines.slots[i] = no_line;
+        lines.ranks[i] = no_line;
         lines.colors[i] = vec4(0.0);
     }
     lines.distance2 = 1e38;

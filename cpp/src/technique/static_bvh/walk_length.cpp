@@ -46,7 +46,7 @@ uint64_t walk_in(const DecalGroup& group, uint32_t cell, const LatticeBox& box) 
         return true;
     };
     const uint32_t nodes =
-        traverse(group.nodes.data() + start.node, group.objects_in(cell), reached, on_object);
+        traverse(group.nodes.data() + start.node, group.cells[cell].count, reached, on_object);
     return nodes + below;
 }
 
@@ -71,7 +71,7 @@ uint64_t longest_walk(const DecalGroup& group, unsigned threads) {
     parallel_for(group.grid.cell_count(), cells_at_once, threads, [&](size_t begin, size_t end) {
         for (size_t cell = begin; cell < end; ++cell) {
             uint64_t& most = longest[begin / cells_at_once];
-            if (group.objects_in(static_cast<uint32_t>(cell)) > 0)
+            if (group.cells[cell].count > 0)
                 most = std::max(most, longest_walk_in(group, static_cast<uint32_t>(cell)));
         }
     });

@@ -10,6 +10,7 @@
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
+#include "technique/slot_ranks.h"
 #include "technique/static_decals/draw_order.h"
 #include "technique/static_decals/prepared_decals.h"
 
@@ -17,36 +18,6 @@ namespace decalgl {
 namespace {
 
 constexpr size_t block_slots = 1 << 15;
-
-double widest_of(const LayerRules& rules, DecalRole role) {
-    return role == DecalRole::casing ? rules.casing_widest : rules.stroke_widest;
-}
-
-// Widths that the index was not made for are refused before anything is changed.
-void require_widths(const LayerLook& look, const PreparedDecals& decals) {
-    for (const DecalRole role : {DecalRole::stroke, DecalRole::casing}) {
-        const std::vector<double>& widths = look.of(role)->widths;
-        if (widths.empty())
-            continue;
-        const double widest = widest_of(decals.rules[look.layer], role);
-        if (widest <= 0.0)
-            throw Error(
-                ErrorKind::style,
-                "its widths are fixed, since it was prepared without widest; say with widest, where the "
-                "layer is made, how wide its lines may become");
-        const double wanted = *std::max_element(widths.begin(), widths.end());
-        if (wanted > widest)
-            throw Error(ErrorKind::style,
-                        "a width of " + std::to_string(wanted) +
-                            " m is more than it was prepared for; make the layer with a widest "
-                            "above its " +
-                            std::to_string(widest) + " m");
-    }
-}
-
-bool has_widths(const LayerLook& look) {
-    return !look.stroke.widths.empty() || !look.casing.widths.empty();
-}
 
 void apply(const DecalLook& look, const Decal& slot, double half_widths_per_metre, DecalStyle& style) {
     const size_t feature = slot.feature.feature;
@@ -152,7 +123,7 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
     for (const LayerLook& look : looks) {
         if (look.layer >= rules.size())
             continue;
-        require_widths(look, *this);
+        require_widths(look, rules[look.layer]);
         look_of[look.layer] = &look;
     }
     auto result = std::make_shared<PreparedDecals>(*this);
@@ -176,7 +147,7 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
     result->summarise_styles();
     for (const LayerLook& look : looks)
         if (!look.draw_order.empty() && look.layer < rules.size())
-            reorder(look, *result);
+            result->ranks = reordered_ranks(look, rules[look.layer], slots, result->ranks);
     const bool is_reordered = std::any_of(looks.begin(), looks.end(),
                                           [](const LayerLook& look) { return !look.draw_order.empty(); });
     if (is_reordered)

@@ -80,8 +80,8 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
             buffer = gl::TextureBuffer::from(memory_, name, format, ((*next).*array).span());
     };
     refresh("static: buckets", GL_R32UI, &PreparedDecals::bucket_entries, buckets_);
-    cells_.upload(next->cells, next->growing_cells, GL_R32UI, "static: cells", memory_);
-    texels_.upload(next->words, next->growing_words, GL_RGBA32UI, "static: words", memory_);
+    cells_.upload(next->cells, GL_R32UI, "static: cells", memory_);
+    texels_.upload(next->words, GL_RGBA32UI, "static: words", memory_);
     refresh("static: styles", GL_R32UI, &PreparedDecals::kinds, kinds_);
     refresh("static: styles", GL_RGBA32UI, &PreparedDecals::style_records, style_records_);
     upload_styles(next.get(), next_lens.get());

@@ -3,10 +3,10 @@
 
 #include "decalgl/technique/technique.h"
 #include "gl/buffer.h"
+#include "gl/growing_buffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "technique/static_decals/growing_buffer.h"
 #include "technique/static_decals/levels.h"
 #include "technique/static_decals/prepared_decals.h"
 
@@ -52,8 +52,8 @@ private:
     std::shared_ptr<const PreparedDecals> lens_;  // null without one
     MemoryAccount memory_;
     gl::TextureBuffer buckets_;
-    GrowingBuffer cells_;
-    GrowingBuffer texels_;
+    gl::GrowingBuffer cells_;
+    gl::GrowingBuffer texels_;
     gl::TextureBuffer styles_;                 // those inside the lens follow the others
     gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
     gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
