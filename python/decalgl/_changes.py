@@ -82,6 +82,10 @@ class LayerChanges:
         states = {**self._states, index: done.state}
         looks = [] if self.lens is None else self._lens_looks(self.lens, states)
         self._core.edit(done.core)
+        # What was added looks as the layer was prepared.
+        style = done.state.style_look() if len(done.rows) else None
+        if style is not None:
+            self._core.restyle([style])
         self._states = states
         self._any = True
         if self.lens is not None:

@@ -125,8 +125,16 @@ LayerSources::LayerSources(const TechniqueInput& input)
 }
 
 LayerSources::Place LayerSources::find(size_t layer, uint32_t feature) const {
+    if (patched_[layer].empty())
+        return {&input_[layer], feature};
     const auto patched = patched_[layer].find(feature);
     return patched == patched_[layer].end() ? Place{&input_[layer], feature} : patched->second;
+}
+
+const StrokeStyle& LayerSources::style_of(const Decal& decal) const {
+    const Place place = find(decal.feature.layer, decal.feature.feature);
+    const Stroke& stroke = decal.role == DecalRole::casing ? place.layer->casing : place.layer->stroke;
+    return stroke.styles[stroke.style(place.feature)];
 }
 
 Layer LayerSources::make_patch(const LayerEdit& edit) const {

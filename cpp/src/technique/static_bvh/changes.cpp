@@ -19,7 +19,9 @@
 #include "technique/slot_ranks.h"
 #include "technique/static_bvh/cell_lists.h"
 #include "technique/static_bvh/data_group.h"
+#include "technique/static_bvh/looks.h"
 #include "technique/static_bvh/walk_length.h"
+#include "technique/style_changes.h"
 
 namespace decalgl::bvh {
 namespace {
@@ -52,6 +54,24 @@ bool holds_layer(const DecalGroup& group, uint32_t layer) {
                        [&](const DecalClass& each) { return each.layer == layer; });
 }
 
+// Other looks after those that there are, and which slots go by them.
+void change_looks(DecalGroup& group, const LayerLook& look, const PreparedBvh& bvh, LargeArray<Style>& styles,
+                  const MemoryAccount& memory) {
+    const std::vector<Layer> layers = layers_of_styles(Span<const LayerLook>(&look, 1), bvh.rules.size());
+    GroupBuild written;
+    LookWriter writer(bvh.lattice, written);
+    const auto first = static_cast<uint32_t>(group.looks.size());
+    for (size_t slot = 0; slot < styles.size(); ++slot) {
+        const Decal& decal = group.slots[slot];
+        if (decal.feature.layer == look.layer && styles[slot].rank != no_rank &&
+            look.of(decal.role)->has_styles())
+            styles[slot].look = first + writer.place_of({&layers[look.layer], decal});
+    }
+    group.looks.append(written.looks, memory, account);
+    group.needs.bands |= written.needs.bands;
+    group.needs.hatches |= written.needs.hatches;
+}
+
 void restyle_group(DecalGroup& group, const LayerLook& look, const PreparedBvh& bvh,
                    const MemoryAccount& memory) {
     const double scale = bvh.rules[look.layer].half_width_per_width / bvh.lattice.quantum;
@@ -62,6 +82,8 @@ void restyle_group(DecalGroup& group, const LayerLook& look, const PreparedBvh& 
         for (size_t slot = 0; slot < styles.size(); ++slot)
             styles[slot].rank = ranks[slot];
     }
+    if (look.fill.has_styles() || look.stroke.has_styles() || look.casing.has_styles())
+        change_looks(group, look, bvh, styles, memory);
     parallel_for(styles.size(), block_slots, bvh.threads, [&](size_t begin, size_t end) {
         for (size_t slot = begin; slot < end; ++slot) {
             const Decal& decal = group.slots[slot];
@@ -333,6 +355,8 @@ std::shared_ptr<const Prepared> PreparedBvh::restyled(Span<const LayerLook> look
         if (look.layer >= rules.size())
             continue;
         require_widths(look, rules[look.layer]);
+        for (const DecalGroup& group : groups)
+            require_styles(look, sources.get(), group.slots);
         for (DecalGroup& group : result->groups) {
             if (!holds_layer(group, look.layer))
                 continue;

@@ -172,10 +172,19 @@ private:
         return charged(SharedArray<T>(std::move(values)), memory_, account);
     }
 
+    static SharedArray<uint32_t> kinds_of(const PreparedDecals& local) {
+        if (!local.kinds.empty())
+            return local.kinds;
+        LargeArray<uint32_t> kinds;
+        for (uint32_t slot = 0; slot < local.slots.size(); ++slot)
+            kinds.push_back(static_cast<uint32_t>(local.scale_of(slot)));
+        return {std::move(kinds)};
+    }
+
     void add_slots(const PreparedDecals& local) {
         if (added_.empty())
             return;
-        if (before_.kinds.empty() != local.kinds.empty())
+        if (before_.kinds.empty() && !local.kinds.empty())
             throw Error(
                 ErrorKind::unsupported,
                 "what is added would be the first of its kind in the scene; prepare the scene anew with it");
@@ -187,8 +196,8 @@ private:
         }
         result_->slots = charged(SharedArray<Decal>(std::move(slots)), memory_, account);
         result_->styles = with_added(before_.styles, local.styles);
-        if (!local.kinds.empty())
-            result_->kinds = with_added(before_.kinds, local.kinds);
+        if (!before_.kinds.empty())
+            result_->kinds = with_added(before_.kinds, kinds_of(local));
         result_->has_lines |= local.has_lines;
         result_->has_polygons |= local.has_polygons;
         result_->largest_scale = std::max(result_->largest_scale, local.largest_scale);

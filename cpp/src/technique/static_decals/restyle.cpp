@@ -13,6 +13,7 @@
 #include "technique/slot_ranks.h"
 #include "technique/static_decals/draw_order.h"
 #include "technique/static_decals/prepared_decals.h"
+#include "technique/style_changes.h"
 
 namespace decalgl {
 namespace {
@@ -73,6 +74,38 @@ struct StyleSummary {
     }
 };
 
+// Other records after those that there are, and which slots go by them.
+void change_records(Span<const LayerLook> looks, PreparedDecals& decals, const MemoryAccount& memory) {
+    const std::vector<Layer> layers = layers_of_styles(looks, decals.rules.size());
+    TechniqueInput input;
+    input.layers = layers;
+    const StyleTable table(input, decals.grid);
+    LargeArray<StyleTexel> records(decals.style_records.begin(), decals.style_records.end());
+    if (records.empty())
+        records.push_back({});
+    const auto offset = static_cast<uint32_t>(records.size()) - 1;
+    records.insert(records.end(), table.texels().begin() + 1, table.texels().end());
+    LargeArray<uint32_t> kinds;
+    kinds.resize(decals.slots.size());
+    uint32_t flags = decals.style_flags & STYLE_WIDENED;
+    for (uint32_t i = 0; i < kinds.size(); ++i) {
+        const Decal& slot = decals.slots[i];
+        kinds[i] = decals.kinds.empty() ? static_cast<uint32_t>(decals.scale_of(i)) : decals.kinds[i];
+        const Layer& layer = layers[slot.feature.layer];
+        const bool changes = slot.is_stroke()
+                                 ? !(slot.role == DecalRole::casing ? layer.casing : layer.stroke).empty()
+                                 : slot.role == DecalRole::fill && !layer.fill.empty();
+        if (changes) {
+            const uint32_t record = table.record_of(slot);
+            kinds[i] = (record == 0 ? 0 : record + offset) << SCALE_BITS | (kinds[i] & SCALE_MASK);
+        }
+        flags |= records[kinds[i] >> SCALE_BITS][0];
+    }
+    decals.kinds = charged(SharedArray<uint32_t>(std::move(kinds)), memory, "static: prepared");
+    decals.style_records = charged(SharedArray<StyleTexel>(std::move(records)), memory, "static: prepared");
+    decals.style_flags = flags;
+}
+
 }  // namespace
 
 void PreparedDecals::summarise_styles() {
@@ -124,6 +157,7 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
         if (look.layer >= rules.size())
             continue;
         require_widths(look, rules[look.layer]);
+        require_styles(look, sources.get(), slots);
         look_of[look.layer] = &look;
     }
     auto result = std::make_shared<PreparedDecals>(*this);
@@ -142,7 +176,9 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
     });
     result->styles = charged(SharedArray<DecalStyle>(std::move(changed)), memory, "static: prepared");
     result->look_token = std::make_shared<const LookToken>();
-    if (std::any_of(looks.begin(), looks.end(), has_widths))
+    if (has_styles(looks))
+        change_records(looks, *result, memory);
+    if (has_styles(looks) || std::any_of(looks.begin(), looks.end(), has_widths))
         result->shape_token = std::make_shared<const ShapeToken>();
     result->summarise_styles();
     for (const LayerLook& look : looks)

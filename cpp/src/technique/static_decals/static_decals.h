@@ -35,6 +35,8 @@ private:
 
     bool needs_levels(const View& view) const;
     void upload_styles(const PreparedDecals* prepared, const PreparedDecals* lens);
+    void upload_records(const PreparedDecals& prepared, const PreparedDecals* lens);
+    bool has_styles() const;
     // What is seen outside the lens, and inside.
     template <typename HoldsFor>
     bool any_look(HoldsFor holds_for) const {
@@ -54,8 +56,9 @@ private:
     gl::TextureBuffer buckets_;
     gl::GrowingBuffer cells_;
     gl::GrowingBuffer texels_;
+    gl::GrowingBuffer lens_texels_;            // where another draw order holds inside the lens
     gl::TextureBuffer styles_;                 // those inside the lens follow the others
-    gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
+    gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain; those inside the lens too
     gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
     Levels levels_, lens_levels_;
     LevelPainter level_painter_, lens_painter_;
