@@ -52,9 +52,9 @@ void require_styles(const LayerLook& look, const LayerSources* sources, Span<con
     if (look.stroke.styles.empty() && look.casing.styles.empty())
         return;
     if (sources == nullptr)
-        throw Error(
-            ErrorKind::unsupported,
-            "a scene that was opened from a file keeps no styles to change; prepare it from its data");
+        throw Error(ErrorKind::unsupported,
+                    "a scene that was opened from a file keeps no styles to change; prepare it from its "
+                    "data, with the file as cache");
     std::set<std::pair<const StrokeStyle*, const StrokeStyle*>> compared;
     for (const Decal& slot : slots) {
         if (slot.feature.layer != look.layer || !slot.is_stroke() || look.of(slot.role)->styles.empty())

@@ -47,16 +47,11 @@ void keep(inout Lines lines, Candidate line) {
 #endif
 }
 
-// The next object of all cells, -1 after the last. Trees are searched apart from what their objects cover, as a branch not
-// taken costs as much in software.
-int next_object(inout Search search) {
-    int object = -1;
-    bool ended = false;
-    do {
-        object = next_in_cell(search);
-        if (object < 0) ended = !next_cell(search);
-    } while (object < 0 && !ended);
-    return object;
+// One node further, or on to the next cell, until an object is found.
+void advance(inout Search search, inout int object, inout bool ended) {
+    if (object >= 0 || ended) return;
+    object = visit_node(search);
+    if (object < 0 && search.node == 0u) ended = !next_cell(search);
 }
 
 // `foot`: the vectors for one pixel right and up, in quanta.
@@ -68,11 +63,16 @@ vec4 lines_at(ivec2 point, mat2 foot) {
     }
     lines.distance2 = 1e38;
     Search search = search_around(point, half_pixel(foot));
-    int object = -1;
+    bool ended = false;
+    // Mesa's software rasteriser ends all loops of a run after 65,535 turns: a turn is an object, or several nodes.
     do {
-        object = next_object(search);
+        int object = -1;
+        advance(search, object, ended);
+        advance(search, object, ended);
+        advance(search, object, ended);
+        advance(search, object, ended);
         if (object >= 0) keep(lines, candidate(object, point, foot));
-    } while (object >= 0);
+    } while (!ended);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < most_lines; ++i) sum += (1.0 - sum.a) * lines.colors[i];
     return sum;

@@ -183,17 +183,19 @@ void sort_objects(DecalGroup& group, GrownArray<T> Parts::*array, unsigned threa
 }
 
 template <typename T>
-void merge_objects(DecalGroup& group, const DecalGroup& local, GrownArray<T> Parts::*array,
-                   const std::vector<uint32_t>& slot_of, const Renumbering& renumbered, bool along_curve,
-                   const MemoryAccount& memory) {
+std::vector<uint32_t> merge_objects(DecalGroup& group, const DecalGroup& local, GrownArray<T> Parts::*array,
+                                    const std::vector<uint32_t>& slot_of, const Renumbering& renumbered,
+                                    bool along_curve, const MemoryAccount& memory) {
     const GrownArray<T>&before = group.*array, &added = local.*array;
     LargeArray<CellStart> cells(group.cells.begin(), group.cells.end());
     LargeArray<LatticeBox> nodes;
     LargeArray<T> objects;
     std::vector<Entry> entries;
+    std::vector<uint32_t> touched;
     for (uint32_t cell = 0; cell < cells.size(); ++cell) {
         if (local.cells[cell].count == 0)
             continue;
+        touched.push_back(cell);
         entries.clear();
         list_cell(group, cell, group, along_curve, false, itself, entries);
         list_cell(
@@ -211,6 +213,7 @@ void merge_objects(DecalGroup& group, const DecalGroup& local, GrownArray<T> Par
     append<T>(group.*array, objects, "objects in cells", memory);
     append<LatticeBox>(group.nodes, nodes, "tree nodes", memory);
     group.cells = charged(SharedArray<CellStart>(std::move(cells)), memory, account);
+    return touched;
 }
 
 }  // namespace
@@ -220,13 +223,17 @@ void sort_cells(DecalGroup& group, const BvhOptions& options, unsigned threads, 
         with_objects(group.kind, [&](auto array) { sort_objects(group, array, threads, memory); });
 }
 
-void add_objects(DecalGroup& group, const DecalGroup& local, const std::vector<uint32_t>& slot_of,
-                 const BvhOptions& options, const MemoryAccount& memory) {
+std::vector<uint32_t> add_objects(DecalGroup& group, const DecalGroup& local,
+                                  const std::vector<uint32_t>& slot_of, const BvhOptions& options,
+                                  const MemoryAccount& memory) {
     const Renumbering renumbered(group, slot_of);
+    std::vector<uint32_t> touched;
     with_objects(group.kind, [&](auto array) {
-        merge_objects(group, local, array, slot_of, renumbered, lies_along_curve(group, options), memory);
+        touched =
+            merge_objects(group, local, array, slot_of, renumbered, lies_along_curve(group, options), memory);
     });
     append_geometry(group, local, renumbered, memory);
+    return touched;
 }
 
 }  // namespace decalgl::bvh

@@ -9,8 +9,9 @@ namespace decalgl::bvh {
 void sort_cells(DecalGroup& group, const BvhOptions& options, unsigned threads, const MemoryAccount& memory);
 
 // Adds what another group holds, built for the same grid. `slot_of` names each of its slots in this one, whose styles
-// know them already. Objects of slots without a rank leave the cells that anything is added to.
-void add_objects(DecalGroup& group, const DecalGroup& local, const std::vector<uint32_t>& slot_of,
-                 const BvhOptions& options, const MemoryAccount& memory);
+// know them already. Objects of slots without a rank leave the cells that anything is added to, which are returned.
+std::vector<uint32_t> add_objects(DecalGroup& group, const DecalGroup& local,
+                                  const std::vector<uint32_t>& slot_of, const BvhOptions& options,
+                                  const MemoryAccount& memory);
 
 }  // namespace decalgl::bvh

@@ -197,14 +197,17 @@ private:
         group.styles = charged(SharedArray<Style>(std::move(styles)), memory_, account);
         std::vector<uint32_t> slot_of(slots.size());
         std::iota(slot_of.begin(), slot_of.end(), first);
+        uint64_t longest = 0;
         if (local)
-            add_objects(group, *local, slot_of, result_->options, memory_);
-        if (!local || group.spent > group.object_count() / 2)
+            longest = longest_walk(group, add_objects(group, *local, slot_of, result_->options, memory_));
+        if (!local || group.spent > group.object_count() / 2) {
             build_anew(group);
+            longest = longest_walk(group, result_->threads);
+        }
         summarise(group);
         require_drawable(group.kind, group.needs.translucency, result_->options,
                          part.layers[edit_.layer].name);
-        result_->longest_walk = std::max(result_->longest_walk, longest_walk(group, result_->threads));
+        result_->longest_walk = std::max(result_->longest_walk, longest);
     }
 
     // Ranks of the slots that come on top of the layer; others move down.

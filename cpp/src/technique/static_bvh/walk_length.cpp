@@ -66,6 +66,13 @@ uint64_t longest_walk_in(const DecalGroup& group, uint32_t cell) {
 
 }  // namespace
 
+uint64_t longest_walk(const DecalGroup& group, Span<const uint32_t> cells) {
+    uint64_t longest = 0;
+    for (const uint32_t cell : cells)
+        longest = std::max(longest, group.cells[cell].count > 0 ? longest_walk_in(group, cell) : 0);
+    return longest;
+}
+
 uint64_t longest_walk(const DecalGroup& group, unsigned threads) {
     std::vector<uint64_t> longest(block_count(group.grid.cell_count(), cells_at_once), 0);
     parallel_for(group.grid.cell_count(), cells_at_once, threads, [&](size_t begin, size_t end) {

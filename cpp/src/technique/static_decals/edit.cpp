@@ -275,11 +275,18 @@ private:
 
 }  // namespace
 
+std::shared_ptr<const Prepared> PreparedDecals::with_sources(const TechniqueInput& input) const {
+    auto result = std::make_shared<PreparedDecals>(*this);
+    result->sources = std::make_shared<const LayerSources>(input);
+    return result;
+}
+
 std::shared_ptr<const Prepared> PreparedDecals::edited(const LayerEdit& edit,
                                                        const MemoryAccount& memory) const {
     if (!sources)
         throw Error(ErrorKind::unsupported,
-                    "a scene that was opened from a file has no vertices to edit; prepare it from its data");
+                    "a scene that was opened from a file has no vertices to edit; prepare it from its data, "
+                    "with the file as cache");
     return Edit(*this, edit, memory).run();
 }
 

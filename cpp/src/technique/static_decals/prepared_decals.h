@@ -38,6 +38,7 @@ public:
     std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                              const MemoryAccount& memory) const override;
 
+    std::shared_ptr<const Prepared> with_sources(const TechniqueInput& input) const override;
     std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
 
     // Works out what styles have in common, from `widest` to `one_color`.
