@@ -66,7 +66,7 @@ public:
     LatticeBox lay(const Stage& stage) {
         charge_.resize(group_.looks.size() * sizeof(LookTexel) +
                        group_.styles.size() * (sizeof(Style) + sizeof(Decal)));
-        LatticeBox box = empty_box;
+        LatticeBox box;
         if (group_.kind != GroupKind::fills) {
             strokes_.emplace(input_, std::move(stroke_slots_), group_, charge_);
             strokes_->lay(lattice_);
@@ -75,7 +75,7 @@ public:
         if (group_.kind != GroupKind::strokes) {
             fills_.emplace(input_, std::move(polygons_), group_, charge_);
             fills_->plant_quad_trees(lattice_, stage);
-            box = merged(box, fills_->common_box());
+            box.add(fills_->common_box());
         }
         return common(box, lattice_.terrain);
     }
