@@ -83,9 +83,9 @@ class LayerChanges:
         looks = [] if self.lens is None else self._lens_looks(self.lens, states)
         self._core.edit(done.core)
         # What was added looks as the layer was prepared.
-        style = done.state.style_look() if len(done.rows) else None
-        if style is not None:
-            self._core.restyle([style])
+        prepared_otherwise = done.state.style_look() if len(done.rows) else None
+        if prepared_otherwise is not None:
+            self._core.restyle([prepared_otherwise])
         self._states = states
         self._any = True
         if self.lens is not None:

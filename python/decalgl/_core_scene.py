@@ -12,7 +12,7 @@ from ._triangles import triangles_of
 
 if TYPE_CHECKING:
     from .scene import Layer, Scene
-    from .strokes import Fill, LinePattern, Stroke, StrokeStyle
+    from .strokes import Fill, Hatch, LinePattern, Stroke, StrokeStyle
 
 
 def core_scene(scene: Scene) -> _core.Scene:

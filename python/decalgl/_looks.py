@@ -32,7 +32,19 @@ if TYPE_CHECKING:
 
 COLOR_KEYWORDS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
 DECAL_KEYWORDS = (*COLOR_KEYWORDS, "width")
-KEYWORDS = (*DECAL_KEYWORDS, *STROKE_STYLES, *FILL_STYLES, "order", "visible", "opacity", "by", "where", "outline", "casing", "technique")
+KEYWORDS = (
+    *DECAL_KEYWORDS,
+    *STROKE_STYLES,
+    *FILL_STYLES,
+    "order",
+    "visible",
+    "opacity",
+    "by",
+    "where",
+    "outline",
+    "casing",
+    "technique",
+)
 # Of layers and their outlines and casings; lists of what lies where are made for them.
 PREPARED = ("cap", "slope_correction", "widest", "width_units", "mode")
 # Of strokes and of fills.
@@ -123,7 +135,11 @@ class LayerState:
         changed = False
         for role, decal in self.decals.items():
             own = getattr(self.layer, role, None)
-            if decal.styles is None or own is None or decal.styles.values is getattr(own, STYLES_OF[role == "fill"]):
+            if (
+                decal.styles is None
+                or own is None
+                or decal.styles.values is getattr(own, STYLES_OF[role == "fill"])
+            ):
                 continue
             _set_styles(getattr(look, role), decal.styles, role)
             changed = True
@@ -171,7 +187,9 @@ def first_state(layer: Layer | PreparedLayer, look: _core.LayerLook) -> LayerSta
             coloring = _coloring_of(scene_layer, role)
             styles = None
             if own is not None:
-                styles = Styles(own.hatches, own.hatch_of) if role == "fill" else Styles(own.styles, own.style_of)
+                styles = (
+                    Styles(own.hatches, own.hatch_of) if role == "fill" else Styles(own.styles, own.style_of)
+                )
             decals[role] = DecalState(
                 core.colors.reshape(-1, 4), widths, getattr(own, "widest", 0.0), coloring, styles
             )
@@ -195,7 +213,9 @@ def _explained(state: LayerState, layer: Layer) -> Layer:
     for role, decal in state.decals.items():
         own = getattr(layer, role)
         widths = {} if decal.widths is None else {"widths": decal.widths[:count]}
-        parts[role] = replace(own, colors=decal.colors[:count], **widths, **_explained_styles(decal, role, count))
+        parts[role] = replace(
+            own, colors=decal.colors[:count], **widths, **_explained_styles(decal, role, count)
+        )
         if decal.coloring is not None:
             name = "coloring" if role == main else "outline_coloring"
             parts[name] = decal.coloring.seen(seen)

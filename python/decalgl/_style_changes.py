@@ -15,7 +15,13 @@ from ._choices import Choices, LayerRows, choose
 from ._values import is_word
 from .patterns import parse_dash
 from .styling import (
-    CORNERS, checked_miter_limit, color_bands, hatches_of, is_one_dash, widths_of_dashes, word_of,
+    CORNERS,
+    checked_miter_limit,
+    color_bands,
+    hatches_of,
+    is_one_dash,
+    widths_of_dashes,
+    word_of,
 )  # fmt: skip
 
 if TYPE_CHECKING:
@@ -54,7 +60,9 @@ def changed_strokes(
     dashes: Choices[Pattern | None] | None = None
     sizes = None
     if "corner" in wanted:
-        corners = choose(rows, "corner", wanted["corner"], word_of(CORNERS), lambda value: is_word(value, CORNERS))
+        corners = choose(
+            rows, "corner", wanted["corner"], word_of(CORNERS), lambda value: is_word(value, CORNERS)
+        )
     if "dash" in wanted:
         dashes = choose(rows, "dash", wanted["dash"], parse_dash, is_one_dash)
         sizes = widths_of_dashes(dashes, widths)

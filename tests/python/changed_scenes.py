@@ -102,5 +102,3 @@ RESTYLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 
 
 FAR = dg.Camera.top_down((-2000.0, -2000.0, 2100.0, 2100.0))
-
-

@@ -224,15 +224,54 @@ def test_a_layer_of_several_colours_says_what_it_needs() -> None:
         renderer.edit("areas", add=NEW_AREAS)
 
 
-def test_saved_scenes_and_published_structures_say_that_they_cannot(tmp_path: Path) -> None:
+def test_scenes_from_files_are_edited_where_the_data_is_there(tmp_path: Path) -> None:
     scene = scene_of(some_areas(), some_ways())
     prepared(scene).save(tmp_path / "map.decal")
-    opened = dg.Renderer(SIZE)
+    opened = dg.Renderer(SIZE, "none")
     opened.open(tmp_path / "map.decal")
     with pytest.raises(dg.UnsupportedError, match="from its data"):
         opened.edit("areas", remove=1)
-    with pytest.raises(dg.UnsupportedError, match="index 'grid'"):
-        prepared(scene, index="bvh").edit("areas", remove=1)
+    opened.preprocess(scene, cache=tmp_path / "map.decal")
+    opened.update(OBLIQUE)
+    expected = prepared(scene)
+    assert "open" in opened.render().stats.preprocess
+    for renderer in (opened, expected):
+        renderer.edit("areas", add=NEW_AREAS, move={5: (10.0, -4.0)}, remove=3)
+    np.testing.assert_array_equal(opened.render().image, expected.render().image)
+    assert picks(opened.render()) == picks(expected.render())
+
+
+OUTLINED: dict[str, dict[str, Any]] = {
+    "over all": {},
+    "over each": {"order": "feature"},
+    "inset": {"mode": "inset"},
+    "mitred": {"corner": "miter", "dash": (5, 3)},
+}
+
+
+@pytest.mark.parametrize(
+    "index", ["grid", "bvh", dg.BvhIndex(cells=20, passes="kind", segment_order="hilbert")]
+)
+@pytest.mark.parametrize("name", OUTLINED)
+def test_outlined_polygons_are_edited(name: str, index: str | dg.BvhIndex) -> None:
+    """New ones lie outside of all others, and above them."""
+    outline = dg.Outline(width=3, width_units="m", color="navy", **OUTLINED[name])
+    areas = [box(30, 30, 50, 50), box(40, 40, 60, 60), box(45, 20, 65, 45)]
+    new = [box(55, 10, 95, 35), box(5, 5, 35, 35)]
+
+    def scene(shapes: list[Any]) -> dg.Scene:
+        scene = hilly_scene()
+        # Another technique below: layers are counted from the scene's first.
+        scene.add_lines([LineString([(0, 50), (100, 60)])], color="red", width=2)
+        scene.add_polygons(shapes, color="tan", outline=outline, name="areas")
+        return scene
+
+    renderer = prepared(scene(areas), index=index)
+    renderer.render()
+    renderer.edit("areas", add=new, replace={0: box(20, 35, 55, 70)})
+    expected = prepared(scene([box(20, 35, 55, 70), *areas[1:], *new]), index=index).render()
+    assert_close(renderer.render(), expected)
+    assert picks(renderer.render()) == picks(expected)
 
 
 def test_an_edited_scene_can_be_saved(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Changes one after the other: what came before stays right, errors change nothing, and sessions are what their steps are."""
+"""Changes one after the other: what came before stays right, and errors change nothing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from shapely import LineString, Point, box
 
 import decalgl as dg
-from changed_scenes import *
+from changed_scenes import INDEXES, PLAIN, assert_same, picks, prepared, scene_of
 from small_scenes import BLUE, GREEN, MAP, OBLIQUE, RED, SIZE, count_color, flat_scene, pixel
 
 if TYPE_CHECKING:
@@ -85,10 +85,10 @@ BAD: dict[str, tuple[Callable[[dg.Renderer], Any], type[dg.DecalError], str]] = 
         dg.InputError,
         "no layer 'x'",
     ),
-    "an order in a lens": (
-        lambda r: setattr(r, "lens", dg.Lens(circle=(1, 2, 3), styles={"areas": {"order": "size"}})),
-        dg.UnsupportedError,
-        "draw order inside a lens",
+    "a short order in a lens": (
+        lambda r: setattr(r, "lens", dg.Lens(circle=(1, 2, 3), styles={"areas": {"order": [1.0, 2.0]}})),
+        dg.InputError,
+        "order",
     ),
 }
 
@@ -122,14 +122,6 @@ def test_lenses_are_checked() -> None:
 def test_nothing_can_be_restyled_before_it_is_prepared() -> None:
     with pytest.raises(dg.InputError, match="preprocess"):
         dg.Renderer().restyle("areas", color="red")
-
-
-def test_the_published_structures_say_that_they_cannot() -> None:
-    renderer = prepared(scene_of(PLAIN, {}), index="bvh")
-    before = renderer.render()
-    with pytest.raises(dg.UnsupportedError, match="index 'grid'"):
-        renderer.restyle("areas", color="red")
-    assert_same(renderer.render(), before)
 
 
 def test_colours_of_a_map_from_above() -> None:
@@ -189,7 +181,10 @@ def test_a_session_is_what_its_steps_are(index: str) -> None:
     kept = [row for row in range(40) if row not in marked]
     ids = renderer.render().ids
     expected = prepared(
-        scene_of({"color": ["tan" if row in kept else "none" for row in range(40)]}, {}), "coverage", index=index)
+        scene_of({"color": ["tan" if row in kept else "none" for row in range(40)]}, {}),
+        "coverage",
+        index=index,
+    )
     np.testing.assert_array_equal(ids, expected.render().ids)
 
 

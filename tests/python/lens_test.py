@@ -8,7 +8,7 @@ import numpy as np
 from shapely import Point, box
 
 import decalgl as dg
-from changed_scenes import *
+from changed_scenes import BOTH, INDEXES, PLAIN, assert_same, picks, prepared, scene_of
 from judge import eroded
 from small_scenes import SIZE
 
@@ -103,3 +103,25 @@ def test_a_lens_follows_what_is_restyled_outside(index: str) -> None:
     assert_same(frame, fresh.render())
 
 
+@INDEXES
+@BOTH
+def test_a_lens_has_a_draw_order_and_styles_of_its_own(antialias: str, index: str) -> None:
+    scene = scene_of({"column": "kind"}, {"color": "navy", "width": 4.0, "dash": (6, 4)})
+    inside: dict[Any, dict[str, Any]] = {
+        "areas": {"order": -np.arange(40.0), "hatch": dg.Hatch(6, 3)},
+        "ways": {"dash": (2, 8), "order": "size"},
+    }
+    renderer = prepared(scene, antialias, index=index)
+    outside = renderer.render()
+    renderer.lens = dg.Lens(circle=(50.0, 50.0, 25.0), styles=inside)
+    frame = renderer.render()
+    renderer.lens = None
+    for layer, style in inside.items():
+        renderer.restyle(layer, **style)
+    expected = renderer.render()
+    x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1]) + 0.5)
+    apart = np.hypot(x - 50.0, y - 50.0)
+    np.testing.assert_array_equal(frame.image[apart < 24.4], expected.image[apart < 24.4])
+    np.testing.assert_array_equal(frame.image[apart > 25.6], outside.image[apart > 25.6])
+    np.testing.assert_array_equal(frame.ids, np.where(apart <= 25.0, expected.ids, outside.ids))
+    assert (frame.image != outside.image).any()

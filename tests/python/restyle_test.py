@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 import decalgl as dg
-from changed_scenes import *
+from changed_scenes import BOTH, FAR, INDEXES, PLAIN, RESTYLES, assert_same, picks, prepared, scene_of
 from small_scenes import OBLIQUE, SIZE
 
 if TYPE_CHECKING:
@@ -64,11 +64,71 @@ def test_widths_are_refused_beyond_what_was_prepared() -> None:
         fixed.restyle("ways", width=1.0)
 
 
-@pytest.mark.parametrize("keyword", ["dash", "bands", "corner", "cap", "hatch"])
-def test_what_lists_are_made_for_is_refused_with_what_to_do(keyword: str) -> None:
-    renderer = prepared(scene_of(PLAIN, {}))
-    with pytest.raises(dg.StyleError, match=rf"'ways': {keyword}= is what .* call preprocess\(scene\)"):
-        renderer.restyle("ways", **{keyword: "round"})
+STYLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "dashes": ({"dash": (6, 4)}, {"dash": (3, 7)}),
+    "corners": ({"corner": "miter"}, {"corner": "bevel"}),
+    "corners of some": ({"corner": "bevel", "cap": "butt"}, {"corner": ["round", "bevel"] * 15}),
+    "bands": (
+        {"bands": [(0.5, "white"), (1.0, "black")]},
+        {"bands": [(0.2, "red"), (0.4, "tan"), (1.0, "blue")]},
+    ),
+}
+
+
+@INDEXES
+@BOTH
+@pytest.mark.parametrize("name", STYLES)
+def test_styles_change_where_the_index_has_their_places(name: str, antialias: str, index: str) -> None:
+    before, after = STYLES[name]
+    fixed = {"width": 5.0, **({"cap": before["cap"]} if "cap" in before else {})}
+    renderer = prepared(scene_of(PLAIN, {**fixed, **before}), antialias, index=index)
+    first = renderer.render()
+    renderer.restyle("ways", **after)
+    frame, expected = (
+        renderer.render(),
+        prepared(scene_of(PLAIN, {**fixed, **after}), antialias, index=index).render(),
+    )
+    np.testing.assert_array_equal(frame.ids, expected.ids)
+    # Lists made for miters lead some pixels another way: coverage is good to 0.02.
+    assert np.abs(frame.image.astype(int) - expected.image).max() <= (5 if antialias == "coverage" else 0)
+    assert (frame.image != first.image).any()
+
+
+@INDEXES
+def test_hatches_change_as_they_like(index: str) -> None:
+    renderer = prepared(scene_of(PLAIN, {}), index=index)
+    plain = renderer.render()
+    hatches = [dg.Hatch(8, 3), None, dg.Hatch(5, 2, angle=10, crossed=True), None] * 10
+    renderer.restyle("areas", hatch=hatches)
+    assert_same(renderer.render(), prepared(scene_of({**PLAIN, "hatch": hatches}, {}), index=index).render())
+    renderer.edit("areas", remove=list(range(10)))
+    renderer.restyle("areas", hatch=False)
+    expected = prepared(scene_of(PLAIN, {}), index=index)
+    expected.edit("areas", remove=list(range(10)))
+    assert_same(renderer.render(), expected.render())
+    assert (plain.image != renderer.render().image).any()
+
+
+REFUSED: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
+    "a dash of none": ({}, {"dash": (4, 4)}, "keeps its period"),
+    "another period": ({"dash": (4, 4)}, {"dash": (4, 5)}, "keeps its period and offset, here 8.0"),
+    "a corner of round lines": ({}, {"corner": "bevel"}, "round all over"),
+    "a farther corner": ({"corner": "bevel"}, {"corner": "miter"}, "reaches farther"),
+    "bands of none": ({}, {"bands": [(1.0, "red")]}, "prepared with bands"),
+    "a cap": ({}, {"cap": "butt"}, "cap= is what"),
+    "a hatch of lines": ({}, {"hatch": dg.Hatch(1, 1)}, "no style of lines"),
+}
+
+
+@INDEXES
+@pytest.mark.parametrize("name", REFUSED)
+def test_styles_without_places_are_refused_with_what_to_do(name: str, index: str) -> None:
+    style, restyle, message = REFUSED[name]
+    renderer = prepared(scene_of(PLAIN, style), index=index)
+    before = renderer.render()
+    with pytest.raises(dg.StyleError, match=rf"'ways'.*{message}"):
+        renderer.restyle("ways", **restyle)
+    assert_same(renderer.render(), before)
 
 
 @INDEXES
@@ -89,7 +149,9 @@ def test_what_was_hidden_when_prepared_can_be_shown(antialias: str, index: str) 
     assert not [name for name in empty.stats.variants if "static" in name]
     renderer.restyle("areas", color="tan")
     renderer.restyle("ways", column="kind")
-    assert_same(renderer.render(), prepared(scene_of(PLAIN, {"column": "kind"}), antialias, index=index).render())
+    assert_same(
+        renderer.render(), prepared(scene_of(PLAIN, {"column": "kind"}), antialias, index=index).render()
+    )
     renderer.restyle(0, visible=False)
     renderer.restyle(1, visible=False)
     assert_same(renderer.render(), empty)
@@ -192,5 +254,3 @@ def test_a_saved_scene_can_be_restyled(tmp_path: Path) -> None:
     expected.preprocess(scene, cache=tmp_path / "changed.decal")
     expected.update(OBLIQUE)
     assert_same(expected.render(), prepared(scene).render())
-
-

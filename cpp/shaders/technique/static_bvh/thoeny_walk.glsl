@@ -20,6 +20,19 @@ struct Lines {
     float distance2;
 };
 
+// A line, and whatever it takes the place of, sinks to where it belongs. Of a line's segments the one that covers most of
+// the pixel counts.
+void sink(inout Lines lines, int place, inout uint rank, inout vec4 color) {
+    uint other = lines.ranks[place];
+    vec4 below = lines.colors[place];
+    bool again = rank == other && rank != no_line;
+    bool takes = rank < other || (again && color.a > below.a);
+    lines.ranks[place] = takes ? rank : other;
+    lines.colors[place] = takes ? color : below;
+    color = takes ? below : color;
+    rank = again ? no_line : takes ? other : rank;
+}
+
 void keep(inout Lines lines, Candidate line) {
 #ifdef NEAREST
     bool ties = line.distance2 == lines.distance2 && line.rank < lines.ranks[0];
@@ -29,22 +42,33 @@ void keep(inout Lines lines, Candidate line) {
         lines.distance2 = line.distance2;
     }
 #else
-    // The line, and whatever it takes the place of, sinks to where it belongs: by constant indices, which leave the
-    // arrays in registers.
+    // One by one: by constant indices, which leave the arrays in registers, and without a loop, whose turns would count.
     uint rank = line.covers ? line.rank : no_line;
     vec4 color = line.color;
-    for (int i = 0; i < most_lines; ++i) {
-        uint other = lines.ranks[i];
-        vec4 below = lines.colors[i];
-        bool again = rank == other && rank != no_line;
-        // Of a line's segments the one that covers most of the pixel.
-        bool takes = rank < other || (again && color.a > below.a);
-        lines.ranks[i] = takes ? rank : other;
-        lines.colors[i] = takes ? color : below;
-        color = takes ? below : color;
-        rank = again ? no_line : takes ? other : rank;
-    }
+    sink(lines, 0, rank, color);
+    sink(lines, 1, rank, color);
+    sink(lines, 2, rank, color);
+    sink(lines, 3, rank, color);
+    sink(lines, 4, rank, color);
+    sink(lines, 5, rank, color);
+    sink(lines, 6, rank, color);
+    sink(lines, 7, rank, color);
 #endif
+}
+
+// Front to back.
+vec4 composed(Lines lines) {
+    vec4 sum = lines.colors[0];
+#ifndef NEAREST
+    sum += (1.0 - sum.a) * lines.colors[1];
+    sum += (1.0 - sum.a) * lines.colors[2];
+    sum += (1.0 - sum.a) * lines.colors[3];
+    sum += (1.0 - sum.a) * lines.colors[4];
+    sum += (1.0 - sum.a) * lines.colors[5];
+    sum += (1.0 - sum.a) * lines.colors[6];
+    sum += (1.0 - sum.a) * lines.colors[7];
+#endif
+    return sum;
 }
 
 // One node further, or on to the next cell, until an object is found.
@@ -73,7 +97,5 @@ vec4 lines_at(ivec2 point, mat2 foot) {
         advance(search, object, ended);
         if (object >= 0) keep(lines, candidate(object, point, foot));
     } while (!ended);
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < most_lines; ++i) sum += (1.0 - sum.a) * lines.colors[i];
-    return sum;
+    return composed(lines);
 }

@@ -329,21 +329,21 @@ private:
 
 }  // namespace
 
-LayerLook PreparedBvh::look_of(uint32_t layer, size_t features) const {
+LayerLook PreparedBvh::look_of(uint32_t layer, size_t count) const {
     LayerLook result;
     result.layer = layer;
     for (const DecalGroup& group : groups) {
         for (size_t slot = 0; slot < group.slots.size(); ++slot) {
             const Decal& decal = group.slots[slot];
             const Style& style = group.styles[slot];
-            if (decal.feature.layer != layer || decal.feature.feature >= features || style.rank == no_rank)
+            if (decal.feature.layer != layer || decal.feature.feature >= count || style.rank == no_rank)
                 continue;
             DecalLook& look = *result.of(decal.role);
-            look.colors.resize(4 * features, 0);
+            look.colors.resize(4 * count, 0);
             std::copy_n(style.color.begin(), 4, &look.colors[size_t{4} * decal.feature.feature]);
             if (!decal.is_stroke())
                 continue;
-            look.widths.resize(features, 0.0);
+            look.widths.resize(count, 0.0);
             look.widths[decal.feature.feature] =
                 std::abs(double{style.half_width}) * lattice.quantum / rules[layer].half_width_per_width;
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "decalgl/core/error.h"
@@ -72,17 +73,21 @@ void StaticBvh::upload(std::shared_ptr<const bvh::PreparedBvh> prepared, Look& l
     for (size_t i = 0; i < look.buffers.size(); ++i) {
         const bvh::DecalGroup& group = prepared->groups[i];
         const std::vector<NamedBuffer> before = std::exchange(look.buffers[i], {});
+        const std::vector<NamedBuffer> none;
+        const std::vector<NamedBuffer>& others = other != nullptr ? other->buffers[i] : none;
         const auto add = [&](const char* name, const char* account, GLenum format, const auto& array) {
-            const size_t place = look.buffers[i].size();
-            NamedBuffer buffer{name, nullptr};
-            if (other != nullptr && other->buffers[i][place].buffer->holds(array))
-                buffer.buffer = other->buffers[i][place].buffer;
-            else if (place < before.size() && before[place].buffer.use_count() == 1)
-                buffer.buffer = before[place].buffer;
-            else
-                buffer.buffer = std::make_shared<gl::GrowingBuffer>();
-            buffer.buffer->upload(array, format, account, memory_);
-            look.buffers[i].push_back(std::move(buffer));
+            std::shared_ptr<gl::GrowingBuffer> buffer;
+            for (const NamedBuffer& each : before)
+                if (std::string_view(each.name) == name &&
+                    (each.buffer.use_count() == 1 || each.buffer->holds(array)))
+                    buffer = each.buffer;
+            for (const NamedBuffer& each : others)
+                if (std::string_view(each.name) == name && each.buffer->holds(array))
+                    buffer = each.buffer;
+            if (!buffer)
+                buffer = std::make_shared<gl::GrowingBuffer>();
+            buffer->upload(array, format, account, memory_);
+            look.buffers[i].push_back({name, std::move(buffer)});
         };
         add("bvh_cells", "static_bvh: cells", GL_RGBA32UI, group.cells);
         add("bvh_nodes", "static_bvh: trees", GL_RGBA32I, group.nodes);
