@@ -67,7 +67,7 @@ def test_widths_are_refused_beyond_what_was_prepared() -> None:
 STYLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "dashes": ({"dash": (6, 4)}, {"dash": (3, 7)}),
     "corners": ({"corner": "miter"}, {"corner": "bevel"}),
-    "corners of some": ({"corner": "bevel", "cap": "butt"}, {"corner": ["round", "bevel"] * 15}),
+    "corners of some": ({"corner": "round", "cap": "butt"}, {"corner": ["round", "bevel"] * 15}),
     "bands": (
         {"bands": [(0.5, "white"), (1.0, "black")]},
         {"bands": [(0.2, "red"), (0.4, "tan"), (1.0, "blue")]},

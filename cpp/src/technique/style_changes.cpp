@@ -18,7 +18,7 @@ bool is_round(const StrokeStyle& style) {
     return style.corner == Corner::round && style.cap == Cap::round && style.pattern.period == 0.0;
 }
 
-void require_places(const StrokeStyle& prepared, const StrokeStyle& wanted) {
+void require_places(const StrokeStyle& prepared, const StrokeStyle& wanted, CornerRoom room) {
     const LinePattern &before = prepared.pattern, &after = wanted.pattern;
     if (before.period != after.period || before.offset != after.offset)
         refuse("the dash= of a prepared line keeps its period and offset, here " +
@@ -34,6 +34,8 @@ void require_places(const StrokeStyle& prepared, const StrokeStyle& wanted) {
         prepared.corner != Corner::miter || wanted.miter_limit < prepared.miter_limit;
     if (wanted.corner == Corner::miter && reaches_farther)
         refuse("corner=\"miter\" reaches farther than the index was made for");
+    if (room == CornerRoom::outline && wanted.corner == Corner::round && prepared.corner != Corner::round)
+        refuse("corner=\"round\" reaches farther than index=\"bvh\" was made for");
     if (prepared.slope_correction != wanted.slope_correction)
         refuse("slope_correction= is what the index was made for");
     if (prepared.bands.empty() && !wanted.bands.empty())
@@ -48,7 +50,8 @@ bool has_styles(Span<const LayerLook> looks) {
     });
 }
 
-void require_styles(const LayerLook& look, const LayerSources* sources, Span<const Decal> slots) {
+void require_styles(const LayerLook& look, const LayerSources* sources, Span<const Decal> slots,
+                    CornerRoom room) {
     if (look.stroke.styles.empty() && look.casing.styles.empty())
         return;
     if (sources == nullptr)
@@ -64,7 +67,7 @@ void require_styles(const LayerLook& look, const LayerSources* sources, Span<con
         const std::pair<const StrokeStyle*, const StrokeStyle*> both{
             &sources->style_of(slot), &wanted.styles[wanted.style_of.empty() ? 0 : wanted.style_of[feature]]};
         if (compared.insert(both).second)
-            require_places(*both.first, *both.second);
+            require_places(*both.first, *both.second, room);
     }
 }
 

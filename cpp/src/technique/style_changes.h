@@ -13,9 +13,13 @@ namespace decalgl {
 
 bool has_styles(Span<const LayerLook> looks);
 
+// What cells hold of a corner: all that its disc may touch, or what an outline of just this corner does.
+enum class CornerRoom { disc, outline };
+
 // `sources` are null for an index that was opened from a file without them. Throws Error(style), which says what the index
 // was not made for, Error(unsupported).
-void require_styles(const LayerLook& look, const LayerSources* sources, Span<const Decal> slots);
+void require_styles(const LayerLook& look, const LayerSources* sources, Span<const Decal> slots,
+                    CornerRoom room);
 
 // The styles of the looks as layers without features, by their places in the scene.
 std::vector<Layer> layers_of_styles(Span<const LayerLook> looks, size_t layer_count);

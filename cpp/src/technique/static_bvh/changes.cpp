@@ -359,7 +359,7 @@ std::shared_ptr<const Prepared> PreparedBvh::restyled(Span<const LayerLook> look
             continue;
         require_widths(look, rules[look.layer]);
         for (const DecalGroup& group : groups)
-            require_styles(look, sources.get(), group.slots);
+            require_styles(look, sources.get(), group.slots, CornerRoom::outline);
         for (DecalGroup& group : result->groups) {
             if (!holds_layer(group, look.layer))
                 continue;

@@ -157,7 +157,7 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
         if (look.layer >= rules.size())
             continue;
         require_widths(look, rules[look.layer]);
-        require_styles(look, sources.get(), slots);
+        require_styles(look, sources.get(), slots, CornerRoom::disc);
         look_of[look.layer] = &look;
     }
     auto result = std::make_shared<PreparedDecals>(*this);
