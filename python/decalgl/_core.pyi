@@ -74,6 +74,10 @@ class Fill:
 class DecalLook:
     colors: NDArray[np.uint8]
     widths: NDArray[np.float64]
+    styles: list[StrokeStyle]
+    style_of: NDArray[np.uint32]
+    hatches: list[Hatch]
+    hatch_of: NDArray[np.uint32]
     def __init__(self) -> None: ...
 
 class LayerLook:

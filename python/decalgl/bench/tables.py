@@ -213,7 +213,9 @@ def styles(results: Results) -> str:
 
 def changes(results: Results) -> str:
     """What changes of a map take, in frames of the view of all of it."""
-    return "\n\n".join([_table(_having(results, "restyle"), CHANGES), machine(results)])
+    return "\n\n".join(
+        [_table(_having(results, "restyle", techniques=("static", "bvh")), CHANGES), machine(results)]
+    )
 
 
 def networks(results: Results) -> str:
