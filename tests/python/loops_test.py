@@ -133,7 +133,7 @@ def varied_scene(technique: str | dg.Technique) -> dg.Scene:
     return scene
 
 
-@pytest.mark.parametrize("bvh", [*NAMED_BVHS, dg.LoopsBvh((9, 4), 10, (3, 2), (4, 9, 4), 1, 0.5)], ids=str)
+@pytest.mark.parametrize("bvh", [None, *NAMED_BVHS, dg.LoopsBvh((9, 4), 10, (3, 2), (4, 9, 4), 1, 0.5)], ids=str)
 def test_every_index_draws_the_same(bvh: Any) -> None:
     static = draw(varied_scene("static"))
     frame = draw(varied_scene(dg.Loops(bvh=bvh, detail=FULL.detail)))
@@ -153,7 +153,7 @@ def test_segments_draw_what_triangles_do_with_twice_as_many() -> None:
                 [LineString(walk) for walk in walks],
                 width=0.5,
                 width_units="m",
-                technique=dg.Loops(primitives=primitives, detail=detail),
+                technique=dg.Loops(primitives=primitives, bvh="fitted", detail=detail),
             )
             frames[primitives, screen] = draw(scene)
     for screen in (0.0, 3.0):
@@ -191,14 +191,18 @@ def set_detail(drawn: dg.Renderer, layer: dg.Layer, detail: dg.Detail) -> None:
     drawn.restyle(layer, technique=dataclasses.replace(layer.technique, detail=detail))
 
 
-def test_detail_changes_without_preparing() -> None:
-    drawn, layer = prepared(FULL)
+@pytest.mark.parametrize("bvh", [None, "fitted"])
+def test_detail_changes_without_preparing(bvh: str | None) -> None:
+    drawn, layer = prepared(dataclasses.replace(FULL, bvh=bvh))
     full = drawn.render()
     before, ids = full.image.copy(), full.ids.copy()
     set_detail(drawn, layer, dg.Detail(screen=None, uniform=2.0))
     coarse = drawn.render()
     assert (coarse.ids != ids).any()
-    assert coarse.stats.bytes == full.stats.bytes  # nothing new was uploaded
+    if bvh is not None:
+        assert coarse.stats.bytes == full.stats.bytes  # nothing new was uploaded
+    else:
+        assert coarse.stats.counts["loops_primitives"] < 0.5 * full.stats.counts["loops_primitives"]
     set_detail(drawn, layer, FULL.detail)
     again = drawn.render()
     np.testing.assert_array_equal(again.image, before)
@@ -242,7 +246,7 @@ def test_details_by_distance_and_a_second_camera() -> None:
 
 
 def test_heat_maps_count_primitives() -> None:
-    drawn, layer = prepared(FULL)
+    drawn, layer = prepared(dataclasses.replace(FULL, bvh="fitted"))
     heat = {}
     for shows in ("tested", "active"):
         for uniform in (0.0, 3.0):
@@ -401,12 +405,12 @@ def test_what_it_does_not_draw_is_refused() -> None:
     with pytest.raises(dg.UnsupportedError, match="dashes"):
         draw(scene)
     scene = flat_scene()
-    layer = scene.add_polygons([box(10, 10, 50, 50)], technique="loops")
+    layer = scene.add_polygons([box(10, 10, 50, 50)], technique=dg.Loops(bvh="fitted"))
     other = scene.add_polygons([box(20, 20, 30, 30)], name="other", technique="static")
     drawn = dg.Renderer(size=SIZE, antialias="none")
     drawn.preprocess(scene)
-    with pytest.raises(dg.UnsupportedError, match="static"):
-        drawn.restyle(layer, color="red")
+    with pytest.raises(dg.UnsupportedError, match="bvh=None"):
+        drawn.restyle(layer, draw_order=[0])
     with pytest.raises(dg.StyleError, match="the layer's own"):
         drawn.restyle(other, technique=dg.Loops())
     with pytest.raises(dg.StyleError, match="detail alone"):

@@ -7,6 +7,7 @@
 namespace decalgl::loops {
 namespace {
 
+constexpr uint32_t no_header = UINT32_MAX;
 constexpr double exact = 1 << 23;  // whole numbers up to there are floats
 
 uint32_t bits_of(double value) {
@@ -57,21 +58,22 @@ void BucketBuilder::add(LatticePoint corner, Span<const BucketSlot> slots, Span<
     level_ = level_of(slots);
     cell_bits_ = bits_ - level_;
     side_ = 1 << level_;
-    done_.fill(0);
+    std::fill_n(done_.begin(), side_, 0);
     items_.clear();
+    last_.assign(size_t(side_) * size_t(side_), no_header);
     for (const BucketSlot& slot : slots) {
         const Span<const Edge> own = edges.subspan(slot.first_edge, slot.edges);
-        met_.fill(0);
-        pending_.clear();
+        std::fill_n(met_.begin(), side_, 0);
+        slot_ = &slot;
         if (styles_[slot.slot].is_fill())
             add_fill(slot, own);
         else
-            add_stroke(slot, own);
+            add_stroke(own, double{styles_[slot.slot].half_width});
     }
     write();
 }
 
-// Twice as many cells as edges, but none that strokes are much wider than.
+// Half as many cells as edges, but none that strokes are much wider than.
 int BucketBuilder::level_of(Span<const BucketSlot> slots) const {
     double reach = 0.0, count = 0.0;
     for (const BucketSlot& slot : slots) {
@@ -79,12 +81,13 @@ int BucketBuilder::level_of(Span<const BucketSlot> slots) const {
         count += slot.edges;
     }
     const double widest_side = std::ldexp(1.0, bits_) * count / std::max(reach, 1e-9);
-    const double cells = std::clamp(2.0 * count, 1.0, std::max(widest_side * widest_side, 1.0));
+    const double cells = std::clamp(0.5 * count, 1.0, std::max(widest_side * widest_side, 1.0));
     return std::min(static_cast<int>(std::lrint(0.5 * std::log2(cells))), CELL_FINEST_LEVEL);
 }
 
 void BucketBuilder::add_fill(const BucketSlot& slot, Span<const Edge> edges) {
-    Rows corners{};
+    Rows corners;
+    std::fill_n(corners.begin(), side_, 0);
     for (const Edge& edge : edges)
         cut_fill(edge, corners);
     uint64_t inside = slot.inside ? ~uint64_t{0} : 0;
@@ -92,7 +95,7 @@ void BucketBuilder::add_fill(const BucketSlot& slot, Span<const Edge> edges) {
         inside ^= corners[size_t(row)];
         corners[size_t(row)] = inside;
     }
-    close(slot, corners, 0);
+    close(corners);
 }
 
 // `corners`: of each row, which columns' corners the edge turns over from there on.
@@ -131,15 +134,12 @@ void BucketBuilder::cut_fill(const Edge& edge, Rows& corners) {
     }
 }
 
-void BucketBuilder::add_stroke(const BucketSlot& slot, Span<const Edge> edges) {
-    const double half_width = double{styles_[slot.slot].half_width};
-    Rows covered{};
-    if (slot.inside)
-        covered.fill(~uint64_t{0});
-    else
-        for (const Edge& edge : edges)
-            put_stroke(edge, half_width, covered);
-    close(slot, covered, CELL_STROKE);
+void BucketBuilder::add_stroke(Span<const Edge> edges, double half_width) {
+    Rows covered;
+    std::fill_n(covered.begin(), side_, 0);
+    for (const Edge& edge : edges)
+        put_stroke(edge, half_width, covered);
+    close(covered);
 }
 
 void BucketBuilder::put_stroke(const Edge& edge, double half_width, Rows& covered) {
@@ -183,6 +183,8 @@ void BucketBuilder::put_stroke(const Edge& edge, double half_width, Rows& covere
 void BucketBuilder::put_edge(int column, int row, const std::array<double, 4>& ends, double reach) {
     if ((done_[size_t(row)] >> column & 1) != 0)
         return;
+    if ((met_[size_t(row)] >> column & 1) == 0)
+        put_header(column, row);
     met_[size_t(row)] |= uint64_t{1} << column;
     const double x = double(corner_.x) + std::ldexp(column, cell_bits_),
                  y = double(corner_.y) + std::ldexp(row, cell_bits_);
@@ -190,60 +192,58 @@ void BucketBuilder::put_edge(int column, int row, const std::array<double, 4>& e
     const auto is_far = [](double value) { return std::abs(value) > exact; };
     if (std::any_of(own.begin(), own.end(), is_far))
         own = part_in(own, -reach - 1.0, std::ldexp(1.0, cell_bits_) + reach + 1.0);
-    pending_.push_back({static_cast<uint32_t>(row * side_ + column), false,
-                        {{bits_of(own[0]), bits_of(own[1]), bits_of(own[2]), bits_of(own[3])}}});
+    const auto cell = static_cast<uint32_t>(row * side_ + column);
+    items_.push_back({cell, {{bits_of(own[0]), bits_of(own[1]), bits_of(own[2]), bits_of(own[3])}}});
+    ++items_[last_[cell]].texel.words[0];
+    ++lists_.edges;
 }
 
-// Headers of a slot, and its edges where it does not cover the whole cell as a stroke.
-void BucketBuilder::close(const BucketSlot& slot, const Rows& inside, uint32_t flags) {
-    const Style& style = styles_[slot.slot];
+void BucketBuilder::put_header(int column, int row) {
+    const Style& style = styles_[slot_->slot];
+    const auto cell = static_cast<uint32_t>(row * side_ + column);
+    last_[cell] = static_cast<uint32_t>(items_.size());
+    items_.push_back({cell,
+                      {{style.is_fill() ? 0 : CELL_STROKE, slot_->slot, style.color,
+                        bits_of(double{style.half_width})}}});
+}
+
+// The cells whose corners are inside of a fill, or that a stroke covers.
+void BucketBuilder::close(const Rows& inside) {
+    const Style& style = styles_[slot_->slot];
     const uint64_t columns = side_ == 64 ? ~uint64_t{0} : (uint64_t{1} << side_) - 1;
-    const bool is_stroke = flags != 0;
     for (int row = 0; row < side_; ++row) {
         const uint64_t own = inside[size_t(row)] & columns & ~done_[size_t(row)];
-        for (uint64_t left = own | met_[size_t(row)]; left != 0; left &= left - 1) {
+        for (uint64_t left = own; left != 0; left &= left - 1) {
             const int column = __builtin_ctzll(left);
-            const bool is_inside = (own >> column & 1) != 0;
-            items_.push_back({static_cast<uint32_t>(row * side_ + column), true,
-                              {{flags | (is_inside ? CELL_INSIDE : 0), slot.slot, style.color,
-                                bits_of(double{style.half_width})}}});
+            if ((met_[size_t(row)] >> column & 1) == 0)
+                put_header(column, row);
+            items_[last_[size_t(row * side_ + column)]].texel.words[0] |= CELL_INSIDE;
         }
         if (style.is_opaque())
-            done_[size_t(row)] |= is_stroke ? own : own & ~met_[size_t(row)];
+            done_[size_t(row)] |= style.is_fill() ? own & ~met_[size_t(row)] : own;
     }
-    for (const Item& item : pending_)
-        items_.push_back(item);
 }
 
-// Sorts the items by cells, and counts edges into headers.
+// Sorts the items by cells.
 void BucketBuilder::write() {
-    const size_t cells = size_t(side_) * size_t(side_), first = lists_.cells.size();
+    const size_t cells = last_.size(), first = lists_.cells.size(), texels = lists_.texels.size();
     lists_.buckets.push_back(static_cast<uint32_t>(first << CELL_LEVEL_BITS) | static_cast<uint32_t>(level_));
     begins_.assign(cells + 1, 0);
     for (const Item& item : items_)
         ++begins_[item.cell + 1];
-    for (size_t i = 0; i < cells; ++i)
-        begins_[i + 1] += begins_[i];
-    const size_t texels = lists_.texels.size();
-    lists_.texels.resize(texels + items_.size());
-    for (size_t i = 0; i < cells; ++i)
-        // One more, as 0 is the empty list.
-        lists_.cells.push_back(begins_[i] == begins_[i + 1] ? 0 : static_cast<uint32_t>(texels + begins_[i] + 1));
-    std::vector<uint32_t> headers(cells, UINT32_MAX), places(begins_.begin(), begins_.end() - 1);
-    for (const Item& item : items_) {
-        const uint32_t place = places[item.cell]++;
-        lists_.texels[texels + place] = item.texel;
-        if (item.is_header)
-            headers[item.cell] = place;
-        else
-            ++lists_.texels[texels + headers[item.cell]].words[0];
-        lists_.edges += item.is_header ? 0 : 1;
-    }
+    lists_.cells.resize(first + cells);
     for (size_t i = 0; i < cells; ++i) {
-        if (headers[i] != UINT32_MAX)
-            lists_.texels[texels + headers[i]].words[0] |= CELL_LAST;
-        lists_.longest = std::max(lists_.longest, begins_[i + 1] - begins_[i]);
+        lists_.longest = std::max(lists_.longest, begins_[i + 1]);
+        begins_[i + 1] += begins_[i];
+        // One more, as 0 is the empty list.
+        lists_.cells[first + i] =
+            begins_[i] == begins_[i + 1] ? 0 : static_cast<uint32_t>(texels + begins_[i] + 1);
+        if (last_[i] != no_header)
+            items_[last_[i]].texel.words[0] |= CELL_LAST;
     }
+    lists_.texels.resize(texels + items_.size());
+    for (const Item& item : items_)
+        lists_.texels[texels + begins_[item.cell]++] = item.texel;
 }
 
 }  // namespace decalgl::loops

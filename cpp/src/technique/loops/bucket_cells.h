@@ -25,7 +25,7 @@ struct Edge {
 // What one slot has in a bucket.
 struct BucketSlot {
     uint32_t slot;
-    bool inside;  // the bucket's corner is, or of a stroke all of it
+    bool inside;  // of a fill, whether the bucket's corner is
     uint32_t first_edge;
     uint32_t edges;
 };
@@ -67,17 +67,17 @@ private:
 
     struct Item {
         uint32_t cell;
-        bool is_header;
         Texel texel;
     };
 
     int level_of(Span<const BucketSlot> slots) const;
     void add_fill(const BucketSlot& slot, Span<const Edge> edges);
     void cut_fill(const Edge& edge, Rows& corners);
-    void add_stroke(const BucketSlot& slot, Span<const Edge> edges);
+    void add_stroke(Span<const Edge> edges, double half_width);
     void put_stroke(const Edge& edge, double half_width, Rows& covered);
     void put_edge(int column, int row, const std::array<double, 4>& ends, double reach);
-    void close(const BucketSlot& slot, const Rows& inside, uint32_t flags);
+    void put_header(int column, int row);
+    void close(const Rows& inside);
     void write();
 
     int bits_;
@@ -85,10 +85,11 @@ private:
     CellLists& lists_;
     LatticePoint corner_{};
     int level_ = 0, cell_bits_ = 0, side_ = 1;
-    Rows done_{}, met_{};        // cells in which nothing more shows; cells with an edge of the slot
-    std::vector<Item> pending_;  // edges of the slot
-    std::vector<Item> items_;
+    Rows done_{}, met_{};         // cells in which nothing more shows; cells with an edge of the slot
+    std::vector<Item> items_;     // headers and edges, of each cell in their order
+    std::vector<uint32_t> last_;  // header of each cell, as a place in the items
     std::vector<uint32_t> begins_;
+    const BucketSlot* slot_ = nullptr;
 };
 
 }  // namespace decalgl::loops

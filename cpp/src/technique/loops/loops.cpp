@@ -47,10 +47,14 @@ std::unique_ptr<const Prepared> Loops::preprocess(const TechniqueInput& input, P
     return loops::build_loops(input, progress);
 }
 
-void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
+void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                    const TerrainView&, const MemoryAccount& memory) {
     memory_ = memory;
     prepared_ = std::static_pointer_cast<const loops::PreparedLoops>(std::move(prepared));
+    if (lens && static_cast<const loops::PreparedLoops&>(*lens).slots() != prepared_->slots())
+        throw Error(ErrorKind::unsupported,
+                    "layers of technique 'loops' look the same inside a lens; use technique 'static' for "
+                    "another look there, or Detail(lens=) for more details");
     if (uploaded_ != prepared_->index()) {
         uploaded_ = nullptr;
         key_.reset();

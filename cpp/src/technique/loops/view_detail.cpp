@@ -78,7 +78,9 @@ Sight::Sight(const View& view, const Lattice& lattice, const GroundRange& height
         // The middle of the picture is seen.
         if (glm::dot(normal, base + direction - place) < 0.0)
             normal = -normal;
-        planes_.push_back({{normal.x, normal.y, normal.z}, -glm::dot(normal, place)});
+        planes_.push_back({{normal.x, normal.y, normal.z},
+                           std::hypot(normal.x, normal.y),
+                           -glm::dot(normal, place)});
     };
     const glm::dvec3 origin_dx(block.ray_origin_dx), origin_dy(block.ray_origin_dy);
     const glm::dvec3 direction_dx(block.ray_direction_dx), direction_dy(block.ray_direction_dy);
@@ -89,7 +91,7 @@ Sight::Sight(const View& view, const Lattice& lattice, const GroundRange& height
         add(glm::cross(direction + y * direction_dy, origin_dx + direction_dx), base + y * origin_dy);
     }
     if (!is_flat)
-        planes_.push_back({{forward.x, forward.y, forward.z}, -glm::dot(forward, at_eye)});
+        add(forward, at_eye);
     find_box({at_eye.x, at_eye.y, at_eye.z}, lattice, heights);
 }
 
@@ -151,14 +153,15 @@ bool ViewDetail::is_active(const Activation& activation, double reach) const {
     const double error = length_ * half_to_double(static_cast<uint16_t>(activation.error_and_radius));
     const double low = lowest_ + height_step_ * (activation.lowest_and_highest & 0xFFFFu);
     const double high = lowest_ + height_step_ * (activation.lowest_and_highest >> 16);
-    for (const SightPlane& plane : sight_.planes()) {
-        const double on_map = std::hypot(plane.normal[0], plane.normal[1]);
-        if (plane.normal[0] * x + plane.normal[1] * y + on_map * (radius + reach) +
+    // Most are too small, and only what is not is looked for in the picture.
+    if (!(error > tolerance(x, y, radius, low, high)))
+        return false;
+    for (const SightPlane& plane : sight_.planes())
+        if (plane.normal[0] * x + plane.normal[1] * y + plane.on_map * (radius + reach) +
                 std::max(plane.normal[2] * low, plane.normal[2] * high) + plane.offset <
             0.0)
             return false;
-    }
-    return error > tolerance(x, y, radius, low, high);
+    return true;
 }
 
 double ViewDetail::tolerance(double x, double y, double radius, double low, double high) const {

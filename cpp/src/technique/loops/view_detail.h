@@ -21,6 +21,7 @@ DetailEye eye_of(const View& view);
 // Where normal * place + offset is below 0, nothing is seen. Metres from the lattice's origin; heights as they are.
 struct SightPlane {
     std::array<double, 3> normal;
+    double on_map;  // the normal's length there
     double offset;
 
     double at(const std::array<double, 3>& place) const {
