@@ -156,10 +156,11 @@ class Loops(Technique):
         the vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): 1 to n - 2, the first to go
         first, with the metres that each removal is off by.
     primitives: in a bvh, lines and outlines are "tri" (refinement triangles) or "seg" (the segments of all levels).
-    bvh: None for cells that are made anew for each view, of what is active in it: the fastest where details are left out.
-        Or the paper's index, which is prepared once and read pixel by pixel: one of its table 1 by name, "fitted" (chosen
-        from the data), or a `LoopsBvh`.
+    bvh: None for cells that are made anew for each view, of what is active in it: the fastest where details are
+        left out. Or the paper's index, which is prepared once and read pixel by pixel: one of its table 1 by name,
+        "fitted" (chosen from the data), or a `LoopsBvh`.
     detail: what the layer begins with; `Renderer.restyle(layer, technique=)` changes it, for the neighbours too.
+        Colours, visibility, widths and order change as those of static layers do; a bvh keeps widths and order.
 
     Draws even fills, outlines, and round lines of one colour a feature with casings; UnsupportedError for other styles.
     Neighbouring layers of equal options are prepared together, so that borders that they share stay shared.

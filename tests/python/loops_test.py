@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import importlib
 import itertools
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +28,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     FloatArray = NDArray[np.float64]
-    IntArray = NDArray[np.int64]
 
 FULL = dg.Loops(detail=dg.Detail(screen=None, uniform=0.0))
 EVERYTHING = [
@@ -133,7 +134,9 @@ def varied_scene(technique: str | dg.Technique) -> dg.Scene:
     return scene
 
 
-@pytest.mark.parametrize("bvh", [None, *NAMED_BVHS, dg.LoopsBvh((9, 4), 10, (3, 2), (4, 9, 4), 1, 0.5)], ids=str)
+@pytest.mark.parametrize(
+    "bvh", [None, *NAMED_BVHS, dg.LoopsBvh((9, 4), 10, (3, 2), (4, 9, 4), 1, 0.5)], ids=str
+)
 def test_every_index_draws_the_same(bvh: Any) -> None:
     static = draw(varied_scene("static"))
     frame = draw(varied_scene(dg.Loops(bvh=bvh, detail=FULL.detail)))
@@ -171,6 +174,44 @@ def test_pick_lists_what_lies_there_at_full_detail() -> None:
         for y in range(0, 100, 7):
             expected = [(picked.layer.index, picked.row) for picked in static.pick(x, y)]
             assert [(picked.layer.index, picked.row) for picked in frame.pick(x, y)] == expected
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        {"color": "red", "opacity": 0.5},
+        {"visible": [i % 3 > 0 for i in range(25)]},
+        {"order": [float(i * 7 % 25) for i in range(25)]},
+        {"outline": {"color": "blue"}},
+    ],
+    ids=lambda look: next(iter(look)),
+)
+def test_looks_change_without_preparing(look: dict[str, Any]) -> None:
+    frames = {}
+    for technique in ("static", FULL):
+        drawn = dg.Renderer(size=SIZE, antialias="none")
+        scene = varied_scene(technique)
+        drawn.preprocess(scene)
+        drawn.update(MAP)
+        before = drawn.render().image.copy()
+        drawn.restyle(0, **look)
+        frames[technique] = drawn.render()
+        assert (frames[technique].image != before).any()
+    static, loops = frames.values()
+    np.testing.assert_array_equal(loops.ids, static.ids)
+    assert np.abs(loops.image.astype(int) - static.image).max() <= 2
+
+
+def test_cells_hold_what_is_in_the_picture() -> None:
+    drawn, _ = prepared(dg.Loops())
+    counts = drawn.render().stats.counts
+    near = dg.Camera.top_down((40.0, 40.0, 60.0, 60.0))
+    drawn.update(near)
+    seen = drawn.render().stats.counts
+    # What is out of the picture is not among them.
+    assert seen["loops_references"] < 0.5 * counts["loops_references"]
+    drawn.update(MAP)
+    assert drawn.render().stats.counts == counts
 
 
 # Levels of detail by place
@@ -263,29 +304,12 @@ def test_heat_maps_count_primitives() -> None:
 # Topology
 
 
-def edges_of(coords: FloatArray, parts: IntArray) -> FloatArray:
-    """The distinct edges (n, 4) of rings, each from its lower end."""
-    sizes = np.diff(parts)
-    following = np.arange(1, len(coords) + 1)
-    following[parts[1:][sizes > 0] - 1] = parts[:-1][sizes > 0]
-    a, b = coords, coords[following]
-    swap = (a[:, 0] > b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] > b[:, 1]))
-    edges = np.where(swap[:, None], np.column_stack([b, a]), np.column_stack([a, b]))
-    return edges[(edges[:, :2] != edges[:, 2:]).any(axis=1)]
-
-
-def count_crossings(edges: FloatArray) -> int:
-    """Pairs of distinct edges that meet anywhere but at a common end."""
-    distinct = np.unique(edges, axis=0)
-    lines = shapely.linestrings(distinct.reshape(-1, 2, 2))
-    first, second = shapely.STRtree(lines).query(lines, predicate="intersects")
-    first, second = first[first < second], second[first < second]
-    common = np.zeros(len(first), dtype=np.bool_)
-    for p in (distinct[first, :2], distinct[first, 2:]):
-        for q in (distinct[second, :2], distinct[second, 2:]):
-            common |= (p == q).all(axis=1)
-    along = shapely.length(shapely.intersection(lines[first[common]], lines[second[common]])) > 1e-6
-    return int((~common).sum() + along.sum())
+@pytest.fixture(scope="module")
+def topology() -> Any:
+    """The benchmark's counts, which is not installed."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(Path(__file__).resolve().parents[2]))
+        yield importlib.import_module("bench.topology")
 
 
 @functools.cache
@@ -295,37 +319,26 @@ def land_cover() -> Any:
     return layer.features
 
 
-@pytest.mark.parametrize("order", ["douglas_peucker", "wang_mueller", "visvalingam_whyatt"])
-def test_real_borders_neither_cross_nor_open(order: str) -> None:
-    features = land_cover()
-    levels = 50 if order == "douglas_peucker" else 6
-    tolerances = [-1.0, *np.geomspace(1.0, 20000.0, levels)]
-    before, outer = None, 0.0
-    fewest = 1.0
-    for coords, parts, _ in dg.Loops(order=order).simplified(features, tolerances):
-        edges = edges_of(coords, parts)
-        if before is None:
-            before, whole = count_crossings(edges), len(edges)
-            rim = odd_edges(edges)
-            outer = shapely.length(shapely.multilinestrings(rim.reshape(-1, 2, 2).tolist()))
-        else:
-            # Fewer levels by shapely where there is more to look at.
-            if len(edges) < 60000 or levels == 6:
-                assert count_crossings(edges) <= before
-        # What bounds one feature and not two is the rim of the map: no border came apart.
-        assert (
-            shapely.length(shapely.multilinestrings(odd_edges(edges).reshape(-1, 2, 2).tolist()))
-            <= outer * 1.001
-        )
-        fewest = min(fewest, len(edges) / whole)
-    assert fewest < 0.2
+@pytest.mark.parametrize(
+    ("order", "levels"), [("douglas_peucker", 10), ("wang_mueller", 4), ("visvalingam_whyatt", 4)]
+)
+def test_real_borders_neither_cross_nor_open(topology: Any, order: str, levels: int) -> None:
+    tolerances = list(np.geomspace(2.0, 20000.0, levels))
+    counts = list(topology.counts_of(land_cover(), order, tolerances))
+    assert [(each.crossings, each.openings) for each in counts] == [(0, 0)] * (levels + 1)
+    assert counts[-1].edges < 0.2 * counts[0].edges
 
 
-def odd_edges(edges: FloatArray) -> FloatArray:
-    """Those that are there an odd number of times."""
-    distinct, counts = np.unique(edges, axis=0, return_counts=True)
-    odd: FloatArray = distinct[counts % 2 == 1]
-    return odd
+def test_crossings_and_openings_are_counted(topology: Any) -> None:
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    beside = np.array([[4.0, 0.0], [8.0, 0.0], [8.0, 4.0], [4.0, 4.0], [4.0, 2.0]])
+    edges = topology.edges_of(np.concatenate([square, beside]), np.array([0, 4, 9]))
+    rim = topology.odd_edges(topology.edges_of(np.concatenate([square, beside[:4]]), np.array([0, 4, 8])))
+    # One side is split and the other is not: it is open there, and lies along it.
+    assert topology.count_openings(edges, rim.reshape(-1, 2)) == 2
+    assert topology.count_crossings(edges) == 2
+    crossing = np.array([[0.0, 0.0, 2.0, 2.0], [0.0, 2.0, 2.0, 0.0], [2.0, 0.0, 2.0, 2.0]])
+    assert topology.count_crossings(crossing) == 1
 
 
 def test_partitions_stay_partitions() -> None:
@@ -410,7 +423,7 @@ def test_what_it_does_not_draw_is_refused() -> None:
     drawn = dg.Renderer(size=SIZE, antialias="none")
     drawn.preprocess(scene)
     with pytest.raises(dg.UnsupportedError, match="bvh=None"):
-        drawn.restyle(layer, draw_order=[0])
+        drawn.restyle(layer, order=[0.0])
     with pytest.raises(dg.StyleError, match="the layer's own"):
         drawn.restyle(other, technique=dg.Loops())
     with pytest.raises(dg.StyleError, match="detail alone"):

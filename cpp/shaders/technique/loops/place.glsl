@@ -3,7 +3,8 @@
 
 uniform ivec2 first_block;  // the lattice begins at its corner
 uniform int block_shift;    // a block is 2^block_shift quanta
-uniform float quantum;      // metres
+uniform float quantum;      // metres, a power of two
+uniform float quanta_per_metre;
 
 // Beyond the lattice, and little enough for sums of 32 bits.
 const float farthest = 1e9;
@@ -19,5 +20,5 @@ ivec2 lattice_point(Position position, vec2 moved) {
     } else {
         block <<= block_shift;
     }
-    return block + ivec2(clamp(roundEven(offset / quantum), -farthest, farthest));
+    return block + ivec2(clamp(roundEven(offset * quanta_per_metre), -farthest, farthest));
 }

@@ -42,14 +42,12 @@ std::array<double, 4> part_in(const std::array<double, 4>& ends, double low, dou
 }  // namespace
 
 int32_t height_at(const Edge& edge, int32_t x) {
-    const double slope =
-        (double(edge.b.y) - edge.a.y) / (double(edge.b.x) - edge.a.x);
+    const double slope = (double(edge.b.y) - edge.a.y) / (double(edge.b.x) - edge.a.x);
     return static_cast<int32_t>(std::lrint(edge.a.y + slope * (double(x) - edge.a.x)));
 }
 
 int32_t place_at(const Edge& edge, int32_t y) {
-    const double slope =
-        (double(edge.b.x) - edge.a.x) / (double(edge.b.y) - edge.a.y);
+    const double slope = (double(edge.b.x) - edge.a.x) / (double(edge.b.y) - edge.a.y);
     return static_cast<int32_t>(std::lrint(edge.a.x + slope * (double(y) - edge.a.y)));
 }
 
@@ -202,9 +200,9 @@ void BucketBuilder::put_header(int column, int row) {
     const Style& style = styles_[slot_->slot];
     const auto cell = static_cast<uint32_t>(row * side_ + column);
     last_[cell] = static_cast<uint32_t>(items_.size());
-    items_.push_back({cell,
-                      {{style.is_fill() ? 0 : CELL_STROKE, slot_->slot, style.color,
-                        bits_of(double{style.half_width})}}});
+    items_.push_back(
+        {cell,
+         {{style.is_fill() ? 0 : CELL_STROKE, slot_->slot, style.color, bits_of(double{style.half_width})}}});
 }
 
 // The cells whose corners are inside of a fill, or that a stroke covers.

@@ -88,7 +88,8 @@ private:
     LinePrimitives primitives_;
 };
 
-Items make_items(const Hierarchy& hierarchy, LinePrimitives primitives, const Slots& slots, unsigned threads) {
+Items make_items(const Hierarchy& hierarchy, LinePrimitives primitives, const Slots& slots,
+                 unsigned threads) {
     constexpr size_t grain = 1024;
     const ItemMaker maker(hierarchy, primitives);
     std::vector<Items> blocks(block_count(slots.decals.size(), grain));

@@ -72,8 +72,8 @@ void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<con
 
 template <typename Values>
 void Loops::add_buffer(const char* name, GLenum format, const Values& values) {
-    buffers_.push_back({name, gl::TextureBuffer::from(memory_, "loops: index", format,
-                                                      Span(values.data(), values.size()))});
+    buffers_.push_back(
+        {name, gl::TextureBuffer::from(memory_, "loops: index", format, Span(values.data(), values.size()))});
 }
 
 void Loops::upload_bvh() {
@@ -91,8 +91,8 @@ void Loops::make_cells(const View& view) {
     const gl::PassTimer timer(view.timings, "loops: cells");
     const LoopsIndex& index = *prepared_->index();
     const LoopsDetail& detail = prepared_->detail();
-    CellsKey key{loops::Sight(view, index.lattice, index.heights),
-                 detail.has_eye ? detail.eye : eye_of(view), detail, prepared_->slots()};
+    CellsKey key{loops::Sight(view, index.lattice, index.heights), detail.has_eye ? detail.eye : eye_of(view),
+                 detail, prepared_->slots()};
     if (key_ && key_->sight == key.sight && same(key_->eye, key.eye) && key_->detail == detail &&
         key_->slots == key.slots)
         return;
@@ -181,6 +181,7 @@ void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuf
     program.set("block_shift",
                 static_cast<int>(std::lrint(std::log2(view.positions.block_size / lattice.quantum))));
     program.set("quantum", static_cast<float>(lattice.quantum));
+    program.set("quanta_per_metre", static_cast<float>(1.0 / lattice.quantum));
     if (flags.count("TESTED") + flags.count("ACTIVE") != 0)
         program.set("heat_top", static_cast<float>(prepared_->detail().heat_top));
     if (index.bvh)

@@ -8,7 +8,7 @@
 namespace decalgl::loops {
 namespace {
 
-constexpr int most_side = 256;       // buckets
+constexpr int most_side = 256;        // buckets
 constexpr int most_bucket_bits = 22;  // so that places in a bucket are exact as floats
 constexpr int least_bucket_bits = CELL_FINEST_LEVEL + 1;
 constexpr uint64_t edges_a_bucket = 64;
@@ -35,7 +35,8 @@ public:
     Grid(const LatticeBox& box, uint64_t edges) : box_(box) {
         const auto side = [&](int64_t size) { return static_cast<int>((size >> bits) + 2); };
         const int64_t width = int64_t{box.max_x} - box.min_x, height = int64_t{box.max_y} - box.min_y;
-        const auto wanted = std::clamp<int64_t>(static_cast<int64_t>(edges / edges_a_bucket), 64, most_side * most_side);
+        const auto wanted =
+            std::clamp<int64_t>(static_cast<int64_t>(edges / edges_a_bucket), 64, most_side * most_side);
         bits = least_bucket_bits;
         while (bits < most_bucket_bits && (side(width) > most_side || side(height) > most_side ||
                                            int64_t{side(width)} * side(height) > wanted))
@@ -75,8 +76,10 @@ public:
             return;
         const bool is_fill = style.is_fill();
         const int64_t reach = reach_of(style);
-        const int64_t bottom = grid_.corner.y, top = grid_.bottom_of(grid_.rows - 1) + (int64_t{1} << grid_.bits);
-        for (const uint32_t arc : is_fill ? arcs_.fill_of(slots_.features[slot]) : arcs_.stroke_of(slots_.features[slot])) {
+        const int64_t bottom = grid_.corner.y,
+                      top = grid_.bottom_of(grid_.rows - 1) + (int64_t{1} << grid_.bits);
+        for (const uint32_t arc :
+             is_fill ? arcs_.fill_of(slots_.features[slot]) : arcs_.stroke_of(slots_.features[slot])) {
             if (arcs_.kinds[arc] == ArcKind::frame)
                 continue;
             const Span<const LatticePoint> points = active_.of(arc);
@@ -84,7 +87,8 @@ public:
                 Edge edge{points[i], points[i + 1]};
                 if (edge.b.x < edge.a.x || (edge.b.x == edge.a.x && edge.b.y < edge.a.y))
                     std::swap(edge.a, edge.b);
-                const int64_t low = std::min(edge.a.y, edge.b.y) - reach, high = std::max(edge.a.y, edge.b.y) + reach;
+                const int64_t low = std::min(edge.a.y, edge.b.y) - reach,
+                              high = std::max(edge.a.y, edge.b.y) + reach;
                 // Below, a fill's edge still turns over the corners above it.
                 if (low >= top || (high < bottom && !is_fill) || (is_fill && edge.a == edge.b))
                     continue;
@@ -137,7 +141,8 @@ ColumnReferences sort_by_columns(const EdgeVisitor& edges, const Grid& grid, siz
 // The buckets of one column.
 class ColumnBuilder {
 public:
-    ColumnBuilder(const Grid& grid, const Slots& slots, int column) : grid_(grid), slots_(slots), left_(grid.left_of(column)) {}
+    ColumnBuilder(const Grid& grid, const Slots& slots, int column)
+        : grid_(grid), slots_(slots), left_(grid.left_of(column)) {}
 
     void build(Span<const Reference> references, CellLists& lists) {
         for (size_t i = 0, next; i < references.size(); i = next) {
@@ -171,7 +176,8 @@ private:
             else
                 place_stroke(reference.edge, reach_of(style));
         // Edges of a bucket next to each other, and the corners that are inside.
-        std::stable_sort(own_.begin(), own_.end(), [](const Piece& a, const Piece& b) { return a.row < b.row; });
+        std::stable_sort(own_.begin(), own_.end(),
+                         [](const Piece& a, const Piece& b) { return a.row < b.row; });
         if (!own_.empty()) {
             first_row_ = std::min(first_row_, own_.front().row);
             last_row_ = std::max(last_row_, own_.back().row);
@@ -200,7 +206,8 @@ private:
         if (edge.b.x > right)
             piece.b = {static_cast<int32_t>(right), height_at(edge, static_cast<int32_t>(right))};
         if (piece.a.x == left_ && piece.b.x > left_) {
-            const int64_t row = (int64_t{piece.a.y} - grid_.corner.y + (int64_t{1} << grid_.bits) - 1) >> grid_.bits;
+            const int64_t row =
+                (int64_t{piece.a.y} - grid_.corner.y + (int64_t{1} << grid_.bits) - 1) >> grid_.bits;
             if (row < grid_.rows)
                 turn(static_cast<int>(std::max<int64_t>(row, 0)));
         }
@@ -232,7 +239,8 @@ private:
     void place_stroke(const Edge& edge, int64_t reach) {
         // What of it may reach the column.
         const double from = std::clamp(double(left_ - reach), double(edge.a.x), double(edge.b.x));
-        const double to = std::clamp(double(left_ + (int64_t{1} << grid_.bits) + reach), double(edge.a.x), double(edge.b.x));
+        const double to = std::clamp(double(left_ + (int64_t{1} << grid_.bits) + reach), double(edge.a.x),
+                                     double(edge.b.x));
         double y0 = edge.a.y, y1 = edge.b.y;
         if (edge.a.x < edge.b.x) {
             const double slope = (y1 - y0) / (double(edge.b.x) - edge.a.x);
@@ -241,12 +249,14 @@ private:
         }
         const auto low = static_cast<int64_t>(std::floor(std::min(y0, y1))) - reach - 1;
         const auto high = static_cast<int64_t>(std::ceil(std::max(y0, y1))) + reach + 1;
-        for (int64_t row = std::max<int64_t>(grid_.row_of(low), 0); row <= std::min<int64_t>(grid_.row_of(high), grid_.rows - 1); ++row)
+        for (int64_t row = std::max<int64_t>(grid_.row_of(low), 0);
+             row <= std::min<int64_t>(grid_.row_of(high), grid_.rows - 1); ++row)
             own_.push_back({static_cast<int>(row), edge});
     }
 
     void write(CellLists& lists) {
-        std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.row < b.row; });
+        std::stable_sort(entries_.begin(), entries_.end(),
+                         [](const Entry& a, const Entry& b) { return a.row < b.row; });
         BucketBuilder builder(grid_.bits, slots_.styles, lists);
         std::vector<BucketSlot> slots;
         size_t next = 0;
@@ -261,7 +271,7 @@ private:
     const Grid& grid_;
     const Slots& slots_;
     int32_t left_;
-    RowSet turned_{}, done_{};   // of the slot in hand, and where nothing more shows
+    RowSet turned_{}, done_{};           // of the slot in hand, and where nothing more shows
     int first_row_ = 0, last_row_ = -1;  // of the slot in hand
     std::vector<Piece> own_;
     std::vector<Edge> pieces_;
@@ -279,9 +289,9 @@ CellLists joined(std::vector<CellLists>& columns, const Grid& grid, unsigned thr
         all.longest = std::max(all.longest, columns[i].longest);
     }
     if (texels.back() > most_texels)
-        throw Error(ErrorKind::memory,
-                    "what is active in this view takes " + std::to_string(texels.back()) +
-                        " texels in technique 'loops', more than a shader can read; give a larger tolerance, or a bvh");
+        throw Error(ErrorKind::memory, "what is active in this view takes " + std::to_string(texels.back()) +
+                                           " texels in technique 'loops', more than a shader can read; give "
+                                           "a larger tolerance, or a bvh");
     all.buckets.resize(columns.size() * size_t(grid.rows));
     all.cells.resize(cells.back());
     all.texels.resize(texels.back());
@@ -290,10 +300,13 @@ CellLists joined(std::vector<CellLists>& columns, const Grid& grid, unsigned thr
         for (size_t i = begin; i < end; ++i) {
             CellLists& own = columns[i];
             for (size_t row = 0; row < own.buckets.size(); ++row)
-                all.buckets[row * columns.size() + i] = own.buckets[row] + static_cast<uint32_t>(cells[i] << CELL_LEVEL_BITS);
+                all.buckets[row * columns.size() + i] =
+                    own.buckets[row] + static_cast<uint32_t>(cells[i] << CELL_LEVEL_BITS);
             for (size_t cell = 0; cell < own.cells.size(); ++cell)
-                all.cells[cells[i] + cell] = own.cells[cell] == 0 ? 0 : own.cells[cell] - 1 + static_cast<uint32_t>(texels[i]);
-            std::copy(own.texels.begin(), own.texels.end(), all.texels.begin() + static_cast<ptrdiff_t>(texels[i]));
+                all.cells[cells[i] + cell] =
+                    own.cells[cell] == 0 ? 0 : own.cells[cell] - 1 + static_cast<uint32_t>(texels[i]);
+            std::copy(own.texels.begin(), own.texels.end(),
+                      all.texels.begin() + static_cast<ptrdiff_t>(texels[i]));
             own = {};
         }
     });
@@ -315,7 +328,9 @@ ViewCells make_cells(const Arcs& arcs, const ActiveArcs& active, const Slots& sl
     parallel_for(columns.size(), 1, threads, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             ColumnBuilder(grid, slots, static_cast<int>(i))
-                .build(Span<const Reference>(sorted.all).subspan(sorted.begins[i], sorted.begins[i + 1] - sorted.begins[i]), columns[i]);
+                .build(Span<const Reference>(sorted.all)
+                           .subspan(sorted.begins[i], sorted.begins[i + 1] - sorted.begins[i]),
+                       columns[i]);
     });
     cells.corner = grid.corner;
     cells.bucket_bits = grid.bits;

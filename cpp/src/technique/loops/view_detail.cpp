@@ -34,7 +34,8 @@ std::array<std::vector<Place>, 6> faces_of(const Place& low, const Place& high) 
     std::array<std::vector<Place>, 6> faces;
     for (size_t face = 0; face < 6; ++face) {
         const size_t axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-        for (const auto& [at_u, at_v] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+        for (const auto& [at_u, at_v] :
+             {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
             Place corner{};
             corner[axis] = face % 2 == 0 ? low[axis] : high[axis];
             corner[u] = at_u == 0 ? low[u] : high[u];
@@ -78,9 +79,8 @@ Sight::Sight(const View& view, const Lattice& lattice, const GroundRange& height
         // The middle of the picture is seen.
         if (glm::dot(normal, base + direction - place) < 0.0)
             normal = -normal;
-        planes_.push_back({{normal.x, normal.y, normal.z},
-                           std::hypot(normal.x, normal.y),
-                           -glm::dot(normal, place)});
+        planes_.push_back(
+            {{normal.x, normal.y, normal.z}, std::hypot(normal.x, normal.y), -glm::dot(normal, place)});
     };
     const glm::dvec3 origin_dx(block.ray_origin_dx), origin_dy(block.ray_origin_dy);
     const glm::dvec3 direction_dx(block.ray_direction_dx), direction_dy(block.ray_direction_dy);
