@@ -14,7 +14,7 @@ bool crosses(LatticePoint a, LatticePoint b, LatticePoint point) {
         return false;
     if (a.y > b.y)
         std::swap(a, b);
-    return turn_of(a, b, point) <= 0;
+    return doubled_area(a, b, point) <= 0;
 }
 
 class Query {

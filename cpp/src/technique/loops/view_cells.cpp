@@ -318,7 +318,7 @@ CellLists joined(std::vector<CellLists>& columns, const Grid& grid, unsigned thr
 ViewCells make_cells(const Arcs& arcs, const ActiveArcs& active, const Slots& slots, const LatticeBox& box,
                      unsigned threads) {
     ViewCells cells;
-    if (box.min_x > box.max_x || box.min_y > box.max_y)
+    if (box.empty())
         return cells;
     cells.active = active.points.size() - arcs.count();
     const Grid grid(box, cells.active);
