@@ -14,6 +14,7 @@ const uint no_slot = 0xFFFFFFFFu;
 struct Cell {
     int list;    // its first texel
     vec2 local;  // the point, from the cell's corner
+    float size;
 };
 
 Cell cell_at(ivec2 point) {
@@ -25,7 +26,7 @@ Cell cell_at(ivec2 point) {
     int bits = bucket_bits - level;
     ivec2 place = (offset & ((1 << bucket_bits) - 1)) >> bits;
     uint list = texelFetch(cell_entries, int(entry >> CELL_LEVEL_BITS) + (place.y << level | place.x)).r;
-    return Cell(inside ? int(list) : 0, vec2(offset & ((1 << bits) - 1)));
+    return Cell(inside ? int(list) : 0, vec2(offset & ((1 << bits) - 1)), float(1 << bits));
 }
 
 // Whether the way from the cell's corner to a point crosses an edge: up the left border, where the edge may begin, or

@@ -4,6 +4,7 @@
 //
 // FILLS, STROKES     what there is
 // SAMPLES            the mean of 32 points of the pixel's area, else its centre
+// TRANSLUCENT        some feature is: with SAMPLES, each walks by itself
 // TESTED, ACTIVE     how many edges were looked at, as colours: all of them are active
 // IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
 #include "shared/ray.glsl"
@@ -11,7 +12,7 @@
 
 uniform usampler2D position_texture;
 #ifdef SAMPLES
-#include "shared/sample_offsets.glsl"
+#include "technique/loops/cell_samples.glsl"
 uniform sampler2D surface_texture;
 #endif
 #if defined(TESTED) || defined(ACTIVE)
@@ -31,9 +32,13 @@ void main() {
 #ifdef SAMPLES
     vec4 surface = texelFetch(surface_texture, pixel, 0);
     mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
+#ifdef TRANSLUCENT
     vec4 sum = vec4(0.0);
     for (int i = 0; i < sample_count; ++i) sum += walk(lattice_point(position, foot * sample_offsets[i])).sum;
     color = sum / float(sample_count);
+#else
+    color = mean_of_samples(position, foot * quanta_per_metre);
+#endif
 #else
     Found found = walk(lattice_point(position, vec2(0.0)));
 #if defined(IDS)

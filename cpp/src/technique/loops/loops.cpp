@@ -204,8 +204,13 @@ void Loops::add_flags(gl::Flags& flags) const {
     };
     add_if(std::any_of(styles.begin(), styles.end(), is_fill), "FILLS");
     add_if(!std::all_of(styles.begin(), styles.end(), is_fill), "STROKES");
-    if (!index.bvh)
+    if (!index.bvh) {
+        const auto is_translucent = [](const loops::Style& style) {
+            return style.is_shown() && !style.is_opaque();
+        };
+        add_if(std::any_of(styles.begin(), styles.end(), is_translucent), "TRANSLUCENT");
         return;
+    }
     add_if(index.bvh->primitives == LinePrimitives::segments, "SEGMENTS");
     add_if(index.bvh->tree.most_lists > 1, "PATHS");
     add_if(detail.screen >= 0.0, "SCREEN");
