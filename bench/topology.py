@@ -95,8 +95,9 @@ def counts_of(features: dg.FeatureTable, order: Any, tolerances: list[float]) ->
     """The input as it is on the lattice, then a level for each tolerance."""
     crossings = 0
     rim = np.empty((0, 2))
-    for tolerance in [EVERYTHING, *tolerances]:
-        coords, parts, _ = dg.Loops(order=order).simplified(features, [tolerance])[0]
+    all_tolerances = [EVERYTHING, *tolerances]
+    simplified = dg.Loops(order=order).simplified(features, all_tolerances)
+    for tolerance, (coords, parts, _) in zip(all_tolerances, simplified, strict=True):
         edges = edges_of(coords, parts)
         found = count_crossings(edges)
         if tolerance == EVERYTHING:
