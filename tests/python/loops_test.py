@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import importlib
 import itertools
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +17,7 @@ import judge
 import rounding
 import scenes
 import shapes
+from decalgl.bench import topology
 from decalgl.features import read_features
 from decalgl.loops import NAMED_BVHS
 from scenes import View
@@ -304,14 +303,6 @@ def test_heat_maps_count_primitives() -> None:
 # Topology
 
 
-@pytest.fixture(scope="module")
-def topology() -> Any:
-    """The benchmark's counts, which is not installed."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(Path(__file__).resolve().parents[2]))
-        yield importlib.import_module("bench.topology")
-
-
 @functools.cache
 def land_cover() -> Any:
     """Real land cover of a part of Honolulu, every border of which is shared."""
@@ -322,14 +313,14 @@ def land_cover() -> Any:
 @pytest.mark.parametrize(
     ("order", "levels"), [("douglas_peucker", 10), ("wang_mueller", 4), ("visvalingam_whyatt", 4)]
 )
-def test_real_borders_neither_cross_nor_open(topology: Any, order: str, levels: int) -> None:
+def test_real_borders_neither_cross_nor_open(order: str, levels: int) -> None:
     tolerances = list(np.geomspace(2.0, 20000.0, levels))
     counts = list(topology.counts_of(land_cover(), order, tolerances))
     assert [(each.crossings, each.openings) for each in counts] == [(0, 0)] * (levels + 1)
     assert counts[-1].edges < 0.2 * counts[0].edges
 
 
-def test_crossings_and_openings_are_counted(topology: Any) -> None:
+def test_crossings_and_openings_are_counted() -> None:
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
     beside = np.array([[4.0, 0.0], [8.0, 0.0], [8.0, 4.0], [4.0, 4.0], [4.0, 2.0]])
     edges = topology.edges_of(np.concatenate([square, beside]), np.array([0, 4, 9]))

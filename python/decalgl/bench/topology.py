@@ -1,4 +1,4 @@
-"""Counts what simplifying by LOOPS does to a map: python -m bench.topology FILE ... [--levels 50] [--orders ...]
+"""Counts what simplifying by LOOPS does to a map: python -m decalgl.bench.topology FILE ... [--levels 50]
 
 crossings   pairs of edges that meet elsewhere than at a common end, beyond those of the input
 openings    edges of an odd number of rings that are not on the map's rim: there, neighbours came apart or overlap
@@ -19,8 +19,9 @@ import numpy as np
 import shapely
 
 import decalgl as dg
-from decalgl.features import read_features
-from decalgl.loops import ORDERS
+
+from ..features import read_features
+from ..loops import ORDERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -115,9 +116,9 @@ def levels(features: dg.FeatureTable, count: int) -> list[float]:
 
 def _features(name: str, most: int, box: list[float] | None) -> dg.FeatureTable:
     if name == "iso-bands":
-        from . import workload
+        from . import folders, workload
 
-        work = workload.Workload(workload.real_ground(), workload.DATA, dict(workload.SIZES), "5M", print)
+        work = workload.Workload(workload.real_ground(), folders.data(), dict(workload.SIZES), "5M", print)
         arrays = work.contours("iso-bands", "1M")
         rows = np.arange(len(arrays["heights"]))
         table = dg.FeatureTable(
@@ -134,24 +135,31 @@ def _features(name: str, most: int, box: list[float] | None) -> dg.FeatureTable:
         frame = frame.to_crs(frame.estimate_utm_crs()) if frame.crs and frame.crs.is_geographic else frame
         bare = frame.geometry.set_crs(None, allow_override=True)
         table = read_features(bare, "polygons", terrain_crs=None, layer_name=path.stem)[0]
-    last = int(np.searchsorted(table.part_offsets[table.feature_offsets], most, side="right")) - 1
-    parts = int(table.feature_offsets[max(last, 1)])
-    vertices = int(table.part_offsets[parts])
+    return _last_features(table, most)
+
+
+def _last_features(table: dg.FeatureTable, most: int) -> dg.FeatureTable:
+    """As many whole features as have so many vertices; bands end with peaks, and begin with all of the sea."""
+    begins = table.part_offsets[table.feature_offsets]
+    first = min(int(np.searchsorted(begins, begins[-1] - most)), len(table.rows) - 1)
+    part, vertex = int(table.feature_offsets[first]), int(begins[first])
     return dg.FeatureTable(
         "polygons",
-        table.coords[:vertices],
-        table.part_offsets[: parts + 1],
-        table.feature_offsets[: max(last, 1) + 1],
-        table.rows[: max(last, 1)],
+        table.coords[vertex:],
+        table.part_offsets[part:] - vertex,
+        table.feature_offsets[first:] - part,
+        table.rows[first:],
     )
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="bench.topology", description=(__doc__ or "").split("\n")[0])
+    parser = argparse.ArgumentParser(
+        prog="decalgl.bench.topology", description=(__doc__ or "").split("\n")[0]
+    )
     parser.add_argument("files", nargs="+")
     parser.add_argument("--levels", type=int, default=50)
     parser.add_argument("--orders", nargs="+", default=["douglas_peucker"], choices=ORDERS)
-    parser.add_argument("--most", type=int, default=1_000_000, help="vertices; whole features up to there")
+    parser.add_argument("--most", type=int, default=1_000_000, help="vertices, of whole features")
     parser.add_argument("--box", type=float, nargs=4, help="west south east north, in the file's coordinates")
     arguments = parser.parse_args()
     for name in arguments.files:

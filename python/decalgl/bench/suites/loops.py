@@ -12,11 +12,9 @@ import dataclasses
 import statistics
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 import decalgl as dg
 
-from .. import contours
+from .. import cameras, contours
 from ..measure import draw, interleaved, preprocessing
 from ..workload import KINDS, add_contours
 
@@ -72,42 +70,19 @@ def scene_of(work: Workload, kind: str, size: str, technique: str | dg.Technique
     return scene
 
 
-def flight(work: Workload) -> list[dg.Camera]:
-    """The four phases of section 6.4: zooming in, along at one height, looking around, through a valley."""
-    x0, y0, x1, y1 = work.ground.bounds
-    wide, middle = x1 - x0, np.array([(x0 + x1) / 2, (y0 + y1) / 2])
-    cameras = []
-    for t in (np.arange(FLIGHT) + 0.5) / FLIGHT:
-        part = 4.0 * t % 1.0
-        if t < 0.25:
-            cameras.append(dg.Camera.orbit((*middle, 0.0), wide * 1.5 * 0.05**part, 200, 45))
-        elif t < 0.5:
-            x, y = middle[0] + wide * 0.4 * (part - 0.5), middle[1]
-            cameras.append(dg.Camera.orbit((x, y, 0.0), wide * 0.075, 200, 45))
-        elif t < 0.75:
-            eye = (*middle, wide * 0.05)
-            angle = 2.0 * np.pi * part
-            target = (middle[0] + wide * np.sin(angle), middle[1] + wide * np.cos(angle), -0.25 * wide)
-            cameras.append(dg.Camera.look_at(eye, target))
-        else:
-            x, y = middle + wide * 0.2 * part
-            cameras.append(dg.Camera.orbit((x, y, 0.0), wide * 0.03, 45, 20))
-    return cameras
-
-
-def passes(renderer: dg.Renderer, cameras: list[dg.Camera], name: str) -> Measure:
+def passes(renderer: dg.Renderer, path: list[dg.Camera], name: str) -> Measure:
     """Measures passes over some views, each a view that is new: the layers' as `name`_ms, of these what makes cells as
     `name`_cells_ms, the terrain's as `name`_terrain_ms.
     """
 
     def measured() -> Times:
         sums = dict.fromkeys(PARTS, 0.0)
-        for camera in cameras:
+        for camera in path:
             _leave(renderer, camera)
             for one in draw(renderer, camera, "none").stats.passes:
                 for part, names in PARTS.items():
                     sums[part] += one["ms"] * (one["name"] in names)
-        return {f"{name}{part}_ms": ms / len(cameras) for part, ms in sums.items()}
+        return {f"{name}{part}_ms": ms / len(path) for part, ms in sums.items()}
 
     return measured
 
@@ -123,17 +98,20 @@ def _compare_detail(work: Workload, records: Records, kind: str, size: str) -> N
     static = work.renderer(scene_of(work, kind, size, "static"))
     full = work.renderer(scene_of(work, kind, size, dg.Loops(detail=FULL)))
     half = work.renderer(scene_of(work, kind, size, "loops"))
-    views = {**{name: [camera] for name, camera in work.views.items()}, "flight": flight(work)}
-    for view, cameras in views.items():
+    views = {
+        **{name: [camera] for name, camera in work.views.items()},
+        "flight": cameras.flight(work.ground.bounds, FLIGHT),
+    }
+    for view, path in views.items():
         times = interleaved(
             work.runs_of(size),
-            passes(static, cameras, "static"),
-            passes(full, cameras, "full"),
-            passes(half, cameras, "half"),
+            passes(static, path, "static"),
+            passes(full, path, "full"),
+            passes(half, path, "half"),
         )
         records.at(f"{kind} {size}", view, "loops").update(
             **times,
-            active=draw(half, cameras[0], "none").stats.counts["loops_primitives"],
+            active=draw(half, path[0], "none").stats.counts["loops_primitives"],
             loops_detail=times["half_ms"] / times["full_ms"],
             loops_static=times["half_ms"] / times["static_ms"],
             loops_standing=(times["half_ms"] - times["half_cells_ms"]) / times["static_ms"],
@@ -160,6 +138,7 @@ def _compare_primitives(work: Workload, records: Records, size: str) -> None:
 
 def _compare_indexes(work: Workload, records: Records, size: str) -> None:
     constant: Times = {}
+    flight = cameras.flight(work.ground.bounds, FLIGHT)
     for bvh in INDEXES:
         name = bvh or "cells"
         work.say(f"iso-bands {size}, {name}")
@@ -167,7 +146,7 @@ def _compare_indexes(work: Workload, records: Records, size: str) -> None:
             renderer = work.renderer(scene_of(work, "iso-bands", size, dg.Loops(bvh=bvh)))
         except dg.MemoryLimitError:
             continue  # an index larger than shaders can read has no row
-        times = _drawn(renderer, flight(work))
+        times = _drawn(renderer, flight)
         constant = times if name == "constant" else constant
         record = records.at(f"iso-bands {size}", None, f"loops {name}")
         record.update(**times)
@@ -178,11 +157,11 @@ def _compare_indexes(work: Workload, records: Records, size: str) -> None:
             )
 
 
-def _drawn(renderer: dg.Renderer, cameras: list[dg.Camera]) -> Times:
+def _drawn(renderer: dg.Renderer, path: list[dg.Camera]) -> Times:
     """What the index holds, and the median of some rounds over all views."""
-    measured = passes(renderer, cameras, "loops")
+    measured = passes(renderer, path, "loops")
     rounds = [measured() for _ in range(2)]
-    counts = draw(renderer, cameras[0], "none").stats.counts
+    counts = draw(renderer, path[0], "none").stats.counts
     held = {name: float(value) for name, value in counts.items() if name.startswith("loops_")}
     middle = {name: statistics.median(each[name] for each in rounds) for name in rounds[0]}
     return {**held, **middle, "segments": counts["segments"]}
