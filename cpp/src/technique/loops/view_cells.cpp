@@ -32,7 +32,7 @@ bool holds(const RowSet& rows, int row) {
 
 class Grid {
 public:
-    Grid(const LatticeBox& box, uint64_t edges) : box_(box) {
+    Grid(const LatticeBox& box, uint64_t edges) {
         const auto side = [&](int64_t size) { return static_cast<int>((size >> bits) + 2); };
         const int64_t width = int64_t{box.max_x} - box.min_x, height = int64_t{box.max_y} - box.min_y;
         const auto wanted =
@@ -54,9 +54,6 @@ public:
     int bits = 0;
     LatticePoint corner{};
     int columns = 0, rows = 0;
-
-private:
-    LatticeBox box_;
 };
 
 int64_t reach_of(const Style& style) {
