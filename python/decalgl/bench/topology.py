@@ -53,13 +53,14 @@ def edges_of(coords: FloatArray, parts: IntArray) -> FloatArray:
     a, b = coords, coords[following]
     swap = (a[:, 0] > b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] > b[:, 1]))
     edges = np.where(swap[:, None], np.column_stack([b, a]), np.column_stack([a, b]))
-    return edges[(edges[:, :2] != edges[:, 2:]).any(axis=1)]
+    drawn: FloatArray = edges[(edges[:, :2] != edges[:, 2:]).any(axis=1)]
+    return drawn
 
 
 def count_crossings(edges: FloatArray) -> int:
     """Pairs of distinct edges that meet anywhere but at a common end."""
     distinct = np.unique(edges, axis=0)
-    lines = shapely.linestrings(distinct.reshape(-1, 2, 2))
+    lines: Any = shapely.linestrings(distinct.reshape(-1, 2, 2))
     tree = shapely.STRtree(lines)
     found = 0
     for begin in range(0, len(lines), MOST_EDGES_AT_ONCE):
