@@ -152,7 +152,7 @@ class LoopsChoice(TechniqueOptions):
         self,
         order: str | Callable[[NDArray[np.float64]], tuple[Any, Any]],
         segments: bool,
-        bvh: LoopsBvh,
+        bvh: LoopsBvh | None,
         detail: LoopsDetail,
     ) -> None: ...
 
