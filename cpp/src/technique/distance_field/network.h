@@ -12,7 +12,7 @@
 
 #include "decalgl/core/large_array.h"
 #include "decalgl/technique/technique.h"
-#include "technique/distance_field/height_ranges.h"
+#include "terrain/height_ranges.h"
 #include "technique/distance_field/network_layout.h"
 
 namespace decalgl::network {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "technique/distance_field/categories.h"
-#include "technique/distance_field/height_ranges.h"
+#include "terrain/height_ranges.h"
 #include "technique/distance_field/network.h"
 
 namespace decalgl::network {

@@ -12,6 +12,7 @@
 #include "gl/gl.h"
 #include "gl/texture.h"
 #include "shared/view_block.h"
+#include "technique/view_base.h"
 
 namespace decalgl {
 namespace {
@@ -31,18 +32,12 @@ using loops::LoopsIndex;
 }
 
 // The camera of the view, out of what all passes are told of it.
-DetailEye eye_of(const View& view) {
+DetailEye detail_eye_of(const View& view) {
     const ViewBlock& block = *view.block;
     DetailEye eye;
-    const double base[] = {view.positions.origin_x + block.base_block.x * view.positions.block_size +
-                               double{block.base_offset.x},
-                           view.positions.origin_y + block.base_block.y * view.positions.block_size +
-                               double{block.base_offset.y},
-                           double{block.base_sample_fraction.z} + double{block.base_sample_fraction.w}};
-    for (int axis = 0; axis < 3; ++axis) {
+    eye.eye = eye_of(view);
+    for (int axis = 0; axis < 3; ++axis)
         eye.forward[size_t(axis)] = double{block.forward[axis]};
-        eye.eye[size_t(axis)] = base[axis] - double{block.forward.w} * double{block.forward[axis]};
-    }
     const auto step = double{glm::length(glm::vec3(block.ray_direction_dy))};
     eye.pixels = step > 0.0 ? 1.0 / step : 0.0;
     eye.corner = 1.0 / std::hypot(1.0, 0.5 * step * std::hypot(double(view.width), double(view.height)));
@@ -222,7 +217,7 @@ void Loops::set_detail(gl::Program& program, const View& view) const {
     }
     if (detail.screen < 0.0 && detail.steps.empty())
         return;
-    const DetailEye eye = detail.has_eye ? detail.eye : eye_of(view);
+    const DetailEye eye = detail.has_eye ? detail.eye : detail_eye_of(view);
     const glm::dvec2 place((eye.eye[0] - lattice.left) / lattice.quantum,
                            (eye.eye[1] - lattice.bottom) / lattice.quantum);
     const glm::dvec2 nearest = glm::clamp(glm::round(place), -1.0 * (1 << 30), 1.0 * (1 << 30));
