@@ -62,7 +62,7 @@ class Workload:
     runs: int = 5
     depths: tuple[int, ...] = (10, 50, 100, 500, 1000, 2000)
     ring: tuple[int, int] = (5_000_000, 10_000)
-    towns: tuple[str, ...] = ("helsinki", "monaco")
+    towns: tuple[str, ...] = ("liechtenstein", "helsinki", "monaco")
 
     def runs_of(self, size: str) -> int:
         """How often to measure at a size."""

@@ -206,7 +206,7 @@ def test_polygons_far_beyond_the_texture_stay_straight() -> None:
         triangle = Polygon([(-1e6, -2e5), (1e6, 2.0001e5), (-1e6, 1e6)])
         scene.add_polygons([triangle], color="red", technique=technique)
         pictures.append(draw(scene, antialias="none"))
-    assert 0.2 < (pictures[0].image[..., 1] < 128).mean() < 0.8
+    assert 0.2 < (pictures[0].image[..., 1] < 128).mean() < 0.95
     assert rms(*pictures) < 14.0
     apart = (pictures[0].image[..., 1] < 128) != (pictures[1].image[..., 1] < 128)
     assert apart.sum() <= 100
