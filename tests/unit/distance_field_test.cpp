@@ -112,8 +112,7 @@ TEST_CASE("ranges of heights hold every sample around a rectangle") {
         const double x = place(generator), y = place(generator), reach = std::abs(place(generator)) / 5.0;
         const Bounds box{x - reach, y - reach, x + reach, y + reach};
         const HeightRange found = ranges.over(box);
-        const bool is_beyond =
-            box.max_x < 0.0 || box.min_x > 1000.0 || box.max_y < 0.0 || box.min_y > 1000.0;
+        const bool is_beyond = box.max_x < 0.0 || box.min_x > 1000.0 || box.max_y < 0.0 || box.min_y > 1000.0;
         REQUIRE((!is_beyond || found.empty()));
         if (is_beyond)
             continue;

@@ -133,9 +133,8 @@ TEST_CASE("pieces of a round stroke cover what is near the line, and nothing els
         for (int i = 0; i < 2000; ++i) {
             const Vector2 p{place(generator), place(generator)};
             const double distance = distance_to(line, p);
-            const bool is_inside = std::any_of(pieces.begin(), pieces.end(), [&](const auto& piece) {
-                return holds(piece, p, 1e-6);
-            });
+            const bool is_inside = std::any_of(pieces.begin(), pieces.end(),
+                                               [&](const auto& piece) { return holds(piece, p, 1e-6); });
             if (distance < half_width * std::cos(0.5 * step) - 1e-3)
                 REQUIRE(is_inside);
             if (distance > half_width + 1e-3)
@@ -180,8 +179,8 @@ TEST_CASE("meshes are closed whatever their triangles are, and hold the ground u
         REQUIRE(is_closed(meshes, volume));
         for (uint32_t i = volume.first_corner; i < volume.first_corner + volume.lid_corners; ++i) {
             const VolumeVertex& vertex = meshes.vertices[volume.first_vertex + meshes.corners[i] / 2U];
-            const HeightRange own = ground.heights.over(
-                ground.lattice.bounds({vertex.x, vertex.y, vertex.x, vertex.y}));
+            const HeightRange own =
+                ground.heights.over(ground.lattice.bounds({vertex.x, vertex.y, vertex.x, vertex.y}));
             const double low = ground.heights.lowest() + step * (vertex.heights & 0xFFFFU);
             const double high = ground.heights.lowest() + step * (vertex.heights >> 16U);
             REQUIRE(low <= high);

@@ -22,7 +22,8 @@ std::vector<PlainLook> changed_looks(Span<const Decal> decals, Span<const PlainL
     std::vector<PlainLook> looks(before.begin(), before.end());
     for (const LayerLook& change : changes) {
         for (size_t i = 0; i < decals.size(); ++i) {
-            const DecalLook* look = decals[i].feature.layer == change.layer ? change.of(decals[i].role) : nullptr;
+            const DecalLook* look =
+                decals[i].feature.layer == change.layer ? change.of(decals[i].role) : nullptr;
             if (look == nullptr)
                 continue;
             const uint32_t feature = decals[i].feature.feature;

@@ -41,8 +41,9 @@ const char* other_than_plain(const Layer& layer) {
 void require_plain_styles(const Layer& layer, const std::string& technique) {
     const std::string place = "layer '" + layer.name + "': technique '" + technique + "' ";
     if (const char* what = other_than_plain(layer))
-        throw Error(ErrorKind::unsupported, place + "cannot draw " + what +
-                                                "; leave that out, or draw the layer with technique 'static'");
+        throw Error(
+            ErrorKind::unsupported,
+            place + "cannot draw " + what + "; leave that out, or draw the layer with technique 'static'");
     const bool has_fills = layer.features.kind == FeatureKind::polygons && !layer.fill.empty();
     if (has_fills && layer.triangles.first_of.size() != layer.features.feature_count() + 1)
         throw Error(ErrorKind::unsupported,

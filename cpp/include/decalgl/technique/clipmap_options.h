@@ -34,8 +34,8 @@ struct ClipmapOptions : TechniqueOptions {
     bool equals(const TechniqueOptions& other) const override {
         const auto* options = dynamic_cast<const ClipmapOptions*>(&other);
         const auto members = [](const ClipmapOptions& o) {
-            return std::tie(o.solution, o.inner_meets, o.bevel_below, o.thin_below, o.widest_line, o.widen_from,
-                            o.widen_to, o.window, o.samples, o.anisotropy, o.tiles_a_frame);
+            return std::tie(o.solution, o.inner_meets, o.bevel_below, o.thin_below, o.widest_line,
+                            o.widen_from, o.widen_to, o.window, o.samples, o.anisotropy, o.tiles_a_frame);
         };
         return options != nullptr && members(*options) == members(*this);
     }

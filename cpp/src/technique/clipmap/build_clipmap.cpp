@@ -86,7 +86,7 @@ private:
         for (size_t i = 2; i < inside.size(); ++i)
             for (const Vector2& corner : {inside[0], inside[i - 1], inside[i]}) {
                 geometry_.fills.push_back(placed(corner));
-                chunk.box.add(geometry_.fills.back().x, geometry_.fills.back().y);
+                chunk.box.add({geometry_.fills.back().x, geometry_.fills.back().y});
                 ++chunk.fill.count;
             }
     }
@@ -166,7 +166,7 @@ private:
             Chunk chunk{done_, true, {}, {}, {}, {}, {}};
             const size_t last = std::min(line.size() - 1, first + chunk_segments);
             for (size_t i = first; i <= last; ++i)
-                chunk.box.add(placed(line[i]).x, placed(line[i]).y);
+                chunk.box.add({placed(line[i]).x, placed(line[i]).y});
             geometry_.chunks.push_back(chunk);
         }
         Path path{done_, add_vertices(line, closed), static_cast<int32_t>(geometry_.pair_count), closed};
@@ -196,8 +196,8 @@ private:
 
     // A joint between two chunks belongs to the first with all its pairs.
     void set_pairs(const std::vector<Vector2>& line, bool closed, size_t chunk) {
-        const std::vector<CornerPair> pairs = corner_pairs(
-            line, closed, 1.0, {geometry_.options.bevel_below, geometry_.options.inner_meets});
+        const std::vector<CornerPair> pairs =
+            corner_pairs(line, closed, 1.0, {geometry_.options.bevel_below, geometry_.options.inner_meets});
         const auto start = static_cast<int32_t>(geometry_.pair_count);
         std::vector<int32_t> last_pair(line.size(), 0);
         for (size_t i = 0; i < pairs.size(); ++i)

@@ -18,20 +18,6 @@ bool has_widths(const LayerLook& look) {
 
 }  // namespace
 
-void LatticeBox::add(int32_t x, int32_t y) {
-    min_x = std::min(min_x, x);
-    min_y = std::min(min_y, y);
-    max_x = std::max(max_x, x);
-    max_y = std::max(max_y, y);
-}
-
-bool LatticeBox::meets(double reach, int64_t left, int64_t bottom, int64_t side) const {
-    const auto meets_along = [&](int32_t low, int32_t high, int64_t from) {
-        return double(low) - reach <= double(from + side) && double(high) + reach >= double(from);
-    };
-    return meets_along(min_x, max_x, left) && meets_along(min_y, max_y, bottom);
-}
-
 bool ClipmapGeometry::draws_lines() const {
     return options.solution == LineSolution::primitives || options.solution == LineSolution::both ||
            options.solution == LineSolution::geometry;

@@ -15,6 +15,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/lattice_points.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/shared_array.h"
 #include "decalgl/technique/clipmap_options.h"
@@ -24,16 +25,7 @@
 
 namespace decalgl::clipmap {
 
-struct LatticeBox {
-    int32_t min_x = INT32_MAX;
-    int32_t min_y = INT32_MAX;
-    int32_t max_x = INT32_MIN;
-    int32_t max_y = INT32_MIN;
-
-    void add(int32_t x, int32_t y);
-    // Whether the box, made larger by `reach` on all sides, meets a square.
-    bool meets(double reach, int64_t left, int64_t bottom, int64_t side) const;
-};
+using lattice::LatticeBox;
 
 struct PlacedVertex {
     int32_t x;

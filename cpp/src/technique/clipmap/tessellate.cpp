@@ -44,8 +44,9 @@ Tessellation tessellate(const ClipmapGeometry& geometry, Span<const PlainLook> l
         const double half_width =
             wider * static_cast<double>(looks[path.decal].half_width) / geometry.texture.quantum();
         size_t at = static_cast<size_t>(path.first_pair);
-        for (const CornerPair& pair : corner_pairs(line, path.closed, half_width,
-                                                   {geometry.options.bevel_below, geometry.options.inner_meets})) {
+        for (const CornerPair& pair :
+             corner_pairs(line, path.closed, half_width,
+                          {geometry.options.bevel_below, geometry.options.inner_meets})) {
             const Vector2 v = line[pair.vertex];
             if (has_offsets)
                 offsets[at] = {rounded(v.x), rounded(v.y), path.decal, packed(pair, is_polar)};

@@ -11,6 +11,14 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+// Whether the box, made larger by `reach` on all sides, meets a square.
+bool meets(const LatticeBox& box, double reach, int64_t left, int64_t bottom, int64_t side) {
+    const auto meets_along = [&](int32_t low, int32_t high, int64_t from) {
+        return double(low) - reach <= double(from + side) && double(high) + reach >= double(from);
+    };
+    return meets_along(box.min_x, box.max_x, left) && meets_along(box.min_y, box.max_y, bottom);
+}
+
 // How far a line reaches from its middle, in half widths: a joint by method 2 reaches farther than the line is wide.
 double reach_of(const ClipmapOptions& options) {
     return 1.0 / std::max(0.02, std::sin(0.5 * options.bevel_below * pi / 180.0));
@@ -148,7 +156,7 @@ void TilePainter::draw(const Tile& tile, const TileStore& store, gl::ProgramLibr
     for (const uint32_t i : prepared_->drawn) {
         const Chunk& chunk = geometry.chunks[i];
         const auto half_width = static_cast<double>(prepared_->looks[chunk.decal].half_width);
-        if (!chunk.box.meets(reach * half_width + 1.0, tile.x * side, tile.y * side, side))
+        if (!meets(chunk.box, reach * half_width + 1.0, tile.x * side, tile.y * side, side))
             continue;
         const double own_texels = 2.0 * wider_ * half_width / texel;
         const Form own = form_of(chunk, own_texels);

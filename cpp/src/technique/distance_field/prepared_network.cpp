@@ -89,8 +89,8 @@ std::unique_ptr<PreparedNetwork> prepare_network(const TechniqueInput& input, Pr
     prepared->reach = prepared->table.reach;
     auto network = std::make_shared<Network>(build_network(input, prepared->reach, progress));
     prepared->charge = charge_for(*network, input.memory);
-    prepared->ranges = std::make_shared<HeightRanges>(*input.terrain, input.threads, input.memory,
-                                                        "distance_field: ground");
+    prepared->ranges =
+        std::make_shared<HeightRanges>(*input.terrain, input.threads, input.memory, "distance_field: ground");
     set_heights(*network, *prepared->ranges, prepared->reach);
     mend(*network, prepared->table, *prepared->options);
     prepared->network = std::move(network);

@@ -66,8 +66,8 @@ GroundRange Ground::below(const LatticeBox& box) const {
         const double place = std::floor((y0_ - lattice_.bottom - lattice_.quantum * y) / dy_);
         return static_cast<int32_t>(std::clamp(place, 0.0, blocks_.rows() - 1.0));
     };
-    const GroundRange range = blocks_.over(
-        {column_of(box.min_x), column_of(box.max_x), row_of(box.max_y), row_of(box.min_y)}, 1);
+    const GroundRange range =
+        blocks_.over({column_of(box.min_x), column_of(box.max_x), row_of(box.max_y), row_of(box.min_y)}, 1);
     // Holes have no ground: what is judged there is judged as if it were everywhere.
     return range.lowest <= range.highest ? range : all_;
 }

@@ -258,8 +258,7 @@ std::vector<FeatureReference> PreparedVolumes::query(const SeenPoint& seen) cons
     const LatticePoint p = rounded(place);
     const auto covers = [&](const Volume& volume) {
         for (uint32_t i = volume.first_corner; i < volume.first_corner + volume.lid_corners; i += 3) {
-            const LatticePoint a = point(volume, i), b = point(volume, i + 1),
-                               c = point(volume, i + 2);
+            const LatticePoint a = point(volume, i), b = point(volume, i + 1), c = point(volume, i + 2);
             if (doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0)
                 return true;
         }

@@ -104,8 +104,8 @@ private:
             for (size_t i = cell.size(); i-- > 0 && cell[i].highest >= lowest;) {
                 const uint32_t needed = above(decal, cell[i].decal);
                 if (needed > lowest &&
-                    lie_over_each_other(triangle, lid_at(prepared_, prepared_.volumes[cell[i].volume],
-                                                         cell[i].corner)))
+                    lie_over_each_other(triangle,
+                                        lid_at(prepared_, prepared_.volumes[cell[i].volume], cell[i].corner)))
                     lowest = needed;
             }
         });
@@ -256,7 +256,8 @@ void set_drawn(std::vector<VolumeOrder> order, PreparedVolumes& prepared, const 
     std::vector<Batch> batches;
     drawn.reserve(order.size());
     for (size_t i = 0; i < order.size(); ++i) {
-        const bool goes_on = i > 0 && order[i - 1].group == order[i].group && order[i - 1].batch == order[i].batch;
+        const bool goes_on =
+            i > 0 && order[i - 1].group == order[i].group && order[i - 1].batch == order[i].batch;
         if (!goes_on)
             batches.push_back({order[i].group, static_cast<uint32_t>(i), 0});
         ++batches.back().volume_count;
@@ -271,8 +272,7 @@ void set_drawn(std::vector<VolumeOrder> order, PreparedVolumes& prepared, const 
 void group_by_color(PreparedVolumes& prepared, const MemoryAccount& memory, Progress& progress) {
     const OverlapCells cells(lid_count(prepared));
     const bool is_simple = prepared.grouping == Grouping::colors || has_one_opaque_color(prepared);
-    Grouped grouped =
-        is_simple ? groups_by_color(prepared) : ExactGrouping(prepared, cells).run(progress);
+    Grouped grouped = is_simple ? groups_by_color(prepared) : ExactGrouping(prepared, cells).run(progress);
     std::vector<VolumeOrder> order;
     for (uint32_t i = 0; i < prepared.volumes.size(); ++i) {
         const uint32_t group = grouped.group_of[prepared.volumes[i].decal];

@@ -41,8 +41,7 @@ void ShadowVolumes::upload(std::shared_ptr<const Prepared> prepared, std::shared
     mesh_ = {};
     vertices_ = {};
     corners_ = {};
-    vertices_ =
-        gl::TextureBuffer::from(memory, "volume: vertices", GL_RGB32I, outside_->vertices.span());
+    vertices_ = gl::TextureBuffer::from(memory, "volume: vertices", GL_RGB32I, outside_->vertices.span());
     corners_ = gl::Buffer::from(memory, "volume: corners", outside_->corners.span());
     no_vertices_ = gl::VertexArray::create();
     mesh_ = gl::VertexArray::create();
@@ -196,8 +195,7 @@ void ShadowVolumes::draw_groups(const PreparedVolumes& prepared, gl::ProgramLibr
     in_hand_ = {};
     for (size_t i = 0; i < prepared.batches.size(); ++i) {
         const Batch& batch = prepared.batches[i];
-        const bool goes_on =
-            i + 1 < prepared.batches.size() && prepared.batches[i + 1].group == batch.group;
+        const bool goes_on = i + 1 < prepared.batches.size() && prepared.batches[i + 1].group == batch.group;
         const volume::Color& color = prepared.groups[batch.group];
         const bool is_opaque = color[3] == 255;
         count(batch.first_drawn, batch.first_drawn + batch.volume_count, volume_at, counting);

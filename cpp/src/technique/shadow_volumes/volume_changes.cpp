@@ -42,8 +42,9 @@ bool permutes(Span<const uint32_t> numbers, size_t count) {
 bool meshes_fit_together(const PreparedVolumes& volumes) {
     uint64_t next_corner = 0;
     for (const Volume& volume : volumes.volumes) {
-        if (volume.first_corner != next_corner || volume.corner_count % 3 != 0 || volume.lid_corners % 3 != 0 ||
-            volume.lid_corners > volume.corner_count || volume.decal >= volumes.decals.size())
+        if (volume.first_corner != next_corner || volume.corner_count % 3 != 0 ||
+            volume.lid_corners % 3 != 0 || volume.lid_corners > volume.corner_count ||
+            volume.decal >= volumes.decals.size())
             return false;
         next_corner += volume.corner_count;
         if (next_corner > volumes.corners.size())
@@ -154,11 +155,12 @@ std::unique_ptr<const PreparedVolumes> open_volumes(const ArchiveReader& archive
     volumes->groups = archive.array<Color>(prefix + "groups");
     volumes->batches = archive.array<Batch>(prefix + "batches");
     volumes->drawn = archive.array<uint32_t>(prefix + "drawn");
-    const bool has_layers = std::all_of(volumes->decals.begin(), volumes->decals.end(), [&](const Decal& decal) {
-        return decal.feature.layer >= record.first_layer &&
-               decal.feature.layer - record.first_layer < volumes->outlines.size() &&
-               decal.role <= DecalRole::casing;
-    });
+    const bool has_layers =
+        std::all_of(volumes->decals.begin(), volumes->decals.end(), [&](const Decal& decal) {
+            return decal.feature.layer >= record.first_layer &&
+                   decal.feature.layer - record.first_layer < volumes->outlines.size() &&
+                   decal.role <= DecalRole::casing;
+        });
     if (!is_known(record) || !has_layers || !meshes_fit_together(*volumes) || !order_fits_together(*volumes))
         archive.refuse("the shadow volumes do not fit together");
     return volumes;

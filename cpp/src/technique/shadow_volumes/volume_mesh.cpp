@@ -17,7 +17,8 @@ struct Edge {
 
 void VolumeMesher::add(Span<const Vector2> corners) {
     const bool inside = std::all_of(corners.begin(), corners.end(), on_lattice);
-    const std::vector<Vector2> cut = inside ? std::vector<Vector2>() : clip_to_square(corners, 0.0, lattice_extent);
+    const std::vector<Vector2> cut =
+        inside ? std::vector<Vector2>() : clip_to_square(corners, 0.0, lattice_extent);
     const Span<const Vector2> polygon = inside ? corners : Span<const Vector2>(cut);
     for (size_t i = 2; i < polygon.size(); ++i)
         add({rounded(polygon[0]), rounded(polygon[i - 1]), rounded(polygon[i])});
@@ -53,13 +54,10 @@ void VolumeMesher::mesh(uint32_t decal, size_t begin, size_t end) {
         mesh(decal, middle, end);
         return;
     }
-    Volume volume{decal,
-                  static_cast<uint32_t>(result_.vertices.size()),
-                  static_cast<uint32_t>(result_.corners.size()),
-                  0,
-                  static_cast<uint32_t>(3 * (end - begin)),
-                  {},
-                  {}};
+    Volume volume{
+        decal, static_cast<uint32_t>(result_.vertices.size()), static_cast<uint32_t>(result_.corners.size()),
+        0,     static_cast<uint32_t>(3 * (end - begin)),       {},
+        {}};
     add_vertices(begin, end);
     for (const uint32_t vertex : triangles_) {
         const VolumeVertex& at = result_.vertices[volume.first_vertex + vertex];

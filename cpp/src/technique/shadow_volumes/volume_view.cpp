@@ -41,9 +41,10 @@ ScreenBox VolumeView::box_of(const Volume& volume) const {
     int behind = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const bool is_lid = (corner & 4) != 0;
-        glm::dvec3 at = relative(corner & 1 ? volume.box.max_x : volume.box.min_x,
-                                 corner & 2 ? volume.box.max_y : volume.box.min_y,
-                                 static_cast<double>(is_lid ? volume.heights.highest : volume.heights.lowest));
+        glm::dvec3 at =
+            relative(corner & 1 ? volume.box.max_x : volume.box.min_x,
+                     corner & 2 ? volume.box.max_y : volume.box.min_y,
+                     static_cast<double>(is_lid ? volume.heights.highest : volume.heights.lowest));
         const glm::dvec3 forward(block_->forward);
         const double along = glm::dot(forward, at);
         const double pixel =
