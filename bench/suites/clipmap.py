@@ -1,4 +1,4 @@
-"""Clipmap textures, solution by solution: Taibo et al. 2014, sections 5.1 to 5.3 and figures 10 to 12, on three line sets.
+"""Clipmap textures, solution by solution: Taibo et al. 2014, sections 5.1 to 5.3, figures 10 to 12, on three line sets.
 
 memory      bytes of what tiles are drawn from
 generate    milliseconds of preparing, the terrain apart

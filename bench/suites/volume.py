@@ -1,4 +1,4 @@
-"""Shadow volumes beside static lines, the thesis's, and dynamic ones: its figure 5.5, with one colour and with hundreds.
+"""Shadow volumes beside static and dynamic lines: figure 5.5 of the thesis, with one colour and with hundreds.
 
 memory     bytes of prepared data and of GL objects
 prepare    milliseconds; cutting polygons into triangles is in them

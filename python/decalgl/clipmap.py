@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from . import _core
 from ._values import is_listed, is_number, is_whole
@@ -99,8 +99,7 @@ class Clipmap(Technique):
         )
 
 
-def _is_range(value: object) -> bool:
-    if not is_listed(value) or len(value) != 2:  # type: ignore[arg-type]
+def _is_range(value: Any) -> bool:
+    if not is_listed(value) or len(value) != 2 or not all(is_number(one) for one in value):
         return False
-    near, far = value  # type: ignore[misc]
-    return is_number(near) and is_number(far) and 0.0 < near <= far < math.inf
+    return bool(0.0 < value[0] <= value[1] < math.inf)

@@ -20,8 +20,8 @@ class Volume(Technique):
     arc_step: degrees between the vertices of round corners and caps, 1 to 90.
 
     A restyle changes colours, what is visible and the draw order, without meshing anew. It draws no
-    antialias="coverage", no patterns, bands, hatches, slope corrections and outlines on one side, and takes no edits and
-    no other widths. Raises StyleError for values out of range.
+    antialias="coverage", no patterns, bands, hatches, slope corrections and outlines on one side, and takes no
+    edits and no other widths. Raises StyleError for values out of range.
     """
 
     name = "volume"

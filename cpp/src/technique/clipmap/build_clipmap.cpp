@@ -86,7 +86,7 @@ private:
         for (size_t i = 2; i < inside.size(); ++i)
             for (const Vector2& corner : {inside[0], inside[i - 1], inside[i]}) {
                 geometry_.fills.push_back(placed(corner));
-                chunk.box.add({geometry_.fills.back().x, geometry_.fills.back().y});
+                chunk.box.add(lattice::LatticePoint{geometry_.fills.back().x, geometry_.fills.back().y});
                 ++chunk.fill.count;
             }
     }
@@ -166,7 +166,7 @@ private:
             Chunk chunk{done_, true, {}, {}, {}, {}, {}};
             const size_t last = std::min(line.size() - 1, first + chunk_segments);
             for (size_t i = first; i <= last; ++i)
-                chunk.box.add({placed(line[i]).x, placed(line[i]).y});
+                chunk.box.add(lattice::LatticePoint{placed(line[i]).x, placed(line[i]).y});
             geometry_.chunks.push_back(chunk);
         }
         Path path{done_, add_vertices(line, closed), static_cast<int32_t>(geometry_.pair_count), closed};
