@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ..records import Records
     from ..workload import Workload
 
-# Solutions of section 4, and solution 2 by each method of the joints.
+# Solutions of section 4, and solutions 2 and 4b by other methods of the joints.
 WAYS: dict[str, dict[str, Any]] = {
     "1": {"solution": "1"},
     "2, method 2": {"solution": "2", "bevel_below": 10.0},
@@ -39,10 +39,11 @@ WAYS: dict[str, dict[str, Any]] = {
     "3b": {"solution": "3b"},
     "4a": {"solution": "4a"},
     "4b": {"solution": "4b"},
+    "4b, method 3a": {"solution": "4b", "joints": "3a"},
     "4b polar": {"solution": "4b polar"},
 }
 # Solutions 1 and 2 have one strategy.
-COMBINED = ("3a", "3b", "4a", "4b", "4b polar")
+COMBINED = ("3a", "3b", "4a", "4b", "4b, method 3a", "4b polar")
 # Texels below which lines are thin: none, or all.
 ALONE = {"wide": 0.0, "thin": 1000.0}
 WIDTHS = (LINE_WIDTH, 2.0 * LINE_WIDTH)

@@ -361,9 +361,12 @@ def test_options_out_of_range(options: dict[str, Any]) -> None:
 
 def test_memory_is_accounted_and_limited() -> None:
     frame = draw(crossing(technique=VOLUME))
-    assert frame.stats.bytes["volume"] >= 8 * (4 * 16 + 4 * 36)
-    with pytest.raises(dg.MemoryLimitError):
-        draw(drawn_by(scenes.build("hills").scene, VOLUME), memory_limit=2_000_000)
+    objects = frame.stats.to_dict()["objects"]
+    # Of a square: four places of 12 bytes, two lids and two bottoms, eight triangles of walls.
+    assert objects["volume: vertices"] == 8 * 4 * 12
+    assert objects["volume: corners"] == 8 * 3 * 12 * 2
+    with pytest.raises(dg.MemoryLimitError, match="Volume"):
+        draw(drawn_by(scenes.build("hills").scene, VOLUME), memory_limit=900_000)
 
 
 def test_picking_lists_what_lies_over_each_other() -> None:
