@@ -21,6 +21,8 @@ class TechniqueOptions {
 public:
     virtual ~TechniqueOptions() = default;
     virtual bool equals(const TechniqueOptions& other) const = 0;
+    // Whether they say how wide lines are, and the layer's widths are not read.
+    virtual bool names_widths() const { return false; }
 };
 
 // Who draws a layer, by a name of technique/registry.cpp.

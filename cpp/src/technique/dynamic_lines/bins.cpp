@@ -35,10 +35,7 @@ gl::TextureBuffer make_texels(const MemoryAccount& memory, GLenum format, size_t
 
 }  // namespace
 
-LineBins::LineBins(const MemoryAccount& memory)
-    : memory_(memory),
-      no_vertices_(gl::VertexArray::create()),
-      half_planes_(gl::TextureBuffer::from(memory, "dynamic: half planes", GL_RG32UI, make_half_planes())) {}
+LineBins::LineBins(const MemoryAccount& memory) : memory_(memory), no_vertices_(gl::VertexArray::create()) {}
 
 void LineBins::reserve(const View& view, uint32_t segments) {
     grid_ = {static_cast<int>(divided(static_cast<uint32_t>(view.width), TILE_SIDE)),
@@ -68,6 +65,9 @@ void LineBins::reserve(const View& view, uint32_t segments) {
 void LineBins::update(const View& view, const MatchedLines& lines, const SegmentList& segments,
                       const LineLooks& looks, gl::ProgramLibrary& programs) {
     reserve(view, segments.most);
+    if (view.antialias == Antialias::coverage && !half_planes_)
+        half_planes_ =
+            gl::TextureBuffer::from(memory_, "dynamic: half planes", GL_RG32UI, make_half_planes());
     {
         const gl::PassTimer timer(view.timings, "dynamic: project");
         project(view, lines, segments, looks, programs);

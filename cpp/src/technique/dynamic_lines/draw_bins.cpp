@@ -31,8 +31,10 @@ void LineBins::bind(gl::Program& program, const GBufferView& gbuffer, const Line
         program.set("lens_texture", 6);
         gbuffer.lens->bind(6);
     }
-    program.set("half_planes", static_cast<int>(half_planes_unit));
-    half_planes_.bind(half_planes_unit);
+    if (half_planes_) {
+        program.set("half_planes", static_cast<int>(half_planes_unit));
+        half_planes_.bind(half_planes_unit);
+    }
     program.set("tile_grid", grid_);
     program.set("run_count", static_cast<int>(run_count_));
 }

@@ -1,16 +1,13 @@
 """What is measured: a terrain, its contours in several sizes, the size of the picture, and how often.
 
-The real ground is San Francisco bay (SRTM, one arc-second), fetched from PyPI by examples/fetch_data.py. A
+The real ground is San Francisco bay (SRTM, one arc-second), fetched from PyPI (fetch.py). A
 test runs the same suites on a few hills.
 """
 
 from __future__ import annotations
 
 import functools
-import subprocess
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,15 +16,15 @@ import shapely
 import decalgl as dg
 from decalgl.road_styles import CLASSES, road_classes
 
-from . import cameras, contours
+from . import cameras, contours, fetch, folders
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from .contours import Arrays, Say
 
-ROOT = Path(__file__).resolve().parent.parent
-DATA = ROOT / "build" / "data"
 KINDS = ("isolines", "iso-bands")
 LINE_WIDTH = 6.0
 LINE_COLOR = "#7a5a36"
@@ -130,17 +127,13 @@ def line_table(arrays: Arrays) -> dg.FeatureTable:
 
 def real_ground() -> dg.Terrain:
     """3597 x 3577 samples, warped to metres; fetched where it is missing."""
-    path = next(DATA.glob("sf/**/*.tif"), None)
-    if path is None:
-        fetch = [sys.executable, str(ROOT / "examples" / "fetch_data.py"), "sf", "--out", str(DATA / "sf")]
-        subprocess.run(fetch, check=True)
-        path = next(DATA.glob("sf/**/*.tif"))
+    (path,) = fetch.fetch("sf", folders.data())
     return _without_rim(dg.Terrain.open(path))
 
 
 def coast_file() -> Path:
     """Coastlines of the world, fetched where they are missing."""
-    return _fetched("gshhg", "coastlines.fgb")
+    return _fetched("gshhg")
 
 
 def roads(town: str) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
@@ -150,7 +143,7 @@ def roads(town: str) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
         return _streets()
     import pyogrio
 
-    found = pyogrio.read_dataframe(_fetched(town, f"{town}.osm.pbf"), layer="lines", columns=["highway"])
+    found = pyogrio.read_dataframe(_fetched(town), layer="lines", columns=["highway"])
     found["class"] = road_classes(found["highway"])
     found = found[found["class"].notna()]
     found = found.to_crs(found.estimate_utm_crs())
@@ -161,17 +154,13 @@ def _streets() -> tuple[NDArray[np.object_], NDArray[np.int64]]:
     generator = np.random.default_rng(9)
     starts = generator.uniform(0.0, 1000.0, (60, 1, 2))
     steps = generator.normal(0.0, 60.0, (60, 8, 2))
-    lines = shapely.linestrings(starts + np.cumsum(steps, axis=1))
+    lines = np.asarray(shapely.linestrings(starts + np.cumsum(steps, axis=1)))
     return lines, np.arange(60, dtype=np.int64) % len(CLASSES)
 
 
-def _fetched(data: str, name: str) -> Path:
-    """A file of a data set, fetched where it is missing."""
-    path = DATA / data / name
-    if not path.is_file():
-        subprocess.run(
-            [sys.executable, str(ROOT / "examples" / "fetch_data.py"), data, "--out", str(DATA)], check=True
-        )
+def _fetched(data: str) -> Path:
+    """The file of a data set of one, fetched where it is missing."""
+    (path,) = fetch.fetch(data, folders.data())
     return path
 
 

@@ -112,7 +112,7 @@ def _scene(
     widths = [CLASSES[look][0] + place for place, look in enumerate(looks)]
     scene = dg.Scene(dg.Terrain.flat(_bounds(network)))
     if as_static:
-        own = {"width": np.take(widths, category), "color": np.take(colors, category)}
+        own: dict[str, Any] = {"width": np.take(widths, category), "color": np.take(colors, category)}
         scene.add_lines(lines, **own, width_units="m", technique="static")
         return scene
     styles = {
