@@ -28,14 +28,14 @@ TECHNIQUES: dict[str, dg.Technique] = {
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "one colour": ("isolines", {}),
     "hundreds of colours": ("isolines", {"cmap": "viridis"}),
-    "iso-bands": ("iso-bands", {}),
+    "by height": ("iso-bands", {}),
 }
 
 
 def measure(work: Workload, records: Records) -> None:
     size = next(iter(work.sizes))
     for case, (kind, looks) in CASES.items():
-        name = f"{kind} {size}" if case == kind else f"{kind} {size}, {case}"
+        name = f"{kind} {size}, {case}"
         work.say(name)
         # Dynamic lines fill nothing.
         ways = [way for way in TECHNIQUES if kind == "isolines" or way != "dynamic"]
