@@ -90,6 +90,31 @@ def test_every_solution_draws_lines_of_a_few_texels(solution: Any) -> None:
     assert rms(plain, clip) <= 9.0
 
 
+# Of a line a fifth of a texel wide: how dark it is, in that of the static one, and how unevenly along it. As triangles
+# it is ragged, more so with one sample a texel; a wireframe has a pair of lines in place of one.
+THIN = {
+    "4b": ({}, (0.95, 1.05), (0.0, 0.12)),
+    "2": ({}, (0.9, 1.1), (0.18, 0.3)),
+    "2 of one sample": ({"samples": 1}, (0.9, 1.15), (0.45, 0.7)),
+    "3b": ({}, (2.0, 3.0), (0.0, 0.12)),
+}
+
+
+@pytest.mark.parametrize("name", list(THIN))
+def test_thin_lines_are_as_dark_and_as_even_as_the_solution_allows(name: str) -> None:
+    options, dark, uneven = THIN[name]
+    darkness = []
+    for technique in (dg.Static(), dg.Clipmap(solution=name.split()[0], **options)):  # type: ignore[arg-type]
+        scene = flat_scene()
+        line = LineString([(5, 10), (95, 41)])
+        scene.add_lines([line], color="black", width=0.2, width_units="m", technique=technique)
+        image = draw(scene, antialias="none" if isinstance(technique, dg.Clipmap) else "coverage").image
+        darkness.append((image[0, 0, 1].astype(float) - image[:, 10:90, 1]).clip(0).sum(axis=0))
+    static, thin = darkness
+    assert dark[0] < thin.mean() / static.mean() < dark[1]
+    assert uneven[0] <= thin.std() / thin.mean() < uneven[1]
+
+
 def test_line_primitives_are_clamped() -> None:
     line = LineString([(0, 50), (100, 50)])
     widths = []
