@@ -131,13 +131,16 @@ void register_scene(py::module_& module) {
     py::class_<clipmap::ClipmapOptions, TechniqueOptions, std::shared_ptr<clipmap::ClipmapOptions>>(
         module, "ClipmapOptions")
         .def(py::init([](int solution, bool inner_meets, double bevel_below, double thin_below,
-                         double widest_line, int window, int samples, int anisotropy, int tiles_a_frame) {
+                         double widest_line, double widen_from, double widen_to, int window, int samples,
+                         int anisotropy, int tiles_a_frame) {
                  clipmap::ClipmapOptions options;
                  options.solution = static_cast<clipmap::LineSolution>(solution);
                  options.inner_meets = inner_meets;
                  options.bevel_below = bevel_below;
                  options.thin_below = thin_below;
                  options.widest_line = widest_line;
+                 options.widen_from = widen_from;
+                 options.widen_to = widen_to;
                  options.window = window;
                  options.samples = samples;
                  options.anisotropy = anisotropy;
@@ -145,8 +148,8 @@ void register_scene(py::module_& module) {
                  return options;
              }),
              py::arg("solution"), py::arg("inner_meets"), py::arg("bevel_below"), py::arg("thin_below"),
-             py::arg("widest_line"), py::arg("window"), py::arg("samples"), py::arg("anisotropy"),
-             py::arg("tiles_a_frame"));
+             py::arg("widest_line"), py::arg("widen_from"), py::arg("widen_to"), py::arg("window"),
+             py::arg("samples"), py::arg("anisotropy"), py::arg("tiles_a_frame"));
     py::class_<volume::VolumeOptions, TechniqueOptions, std::shared_ptr<volume::VolumeOptions>>(
         module, "VolumeOptions")
         .def(py::init([](bool exact, double arc_step) {

@@ -174,6 +174,8 @@ class ClipmapOptions(TechniqueOptions):
         bevel_below: float,
         thin_below: float,
         widest_line: float,
+        widen_from: float,
+        widen_to: float,
         window: int,
         samples: int,
         anisotropy: int,

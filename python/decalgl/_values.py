@@ -19,6 +19,11 @@ def is_number(value: Any) -> bool:
     return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
 
 
+def is_whole(value: Any) -> bool:
+    """Whether it is one whole number; truth values are none."""
+    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+
+
 def finite_number(value: Any, what: str) -> float:
     """The number. Raises StyleError."""
     try:

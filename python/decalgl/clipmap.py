@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from . import _core
+from ._values import is_listed, is_number, is_whole
 from .errors import StyleError
 from .techniques import Technique
 
@@ -33,13 +35,16 @@ class Clipmap(Technique):
     joints: of angles below `bevel_below` degrees, "3b" (inner borders meet, so nothing is drawn twice) or "3a".
     thin_below: texels; thinner lines are line primitives, but for solutions 1 and 2.
     widest_line: texels to which line primitives are clamped.
+    widen: (near, far), metres from the camera to the ground: from `near` on widths grow as the distance does, and from
+        `far` on they stay, in steps of an eighth of an octave. Tiles are drawn anew at each step.
     window: texels of each level that are kept, 512 to 4096; None: as many as the picture is wide.
     samples: of a texel, 1 (smooth lines, jagged polygons, as in the paper), 2 or 4.
     anisotropy: most samples along the longer side of a pixel.
     tiles_a_frame: the most tiles that are drawn for one picture; None: all that it needs.
 
-    It shows what its textures hold: no ids, no picking, no patterns, bands, hatches, slope corrections and outlines
-    on one side; it stays as it was prepared. Raises StyleError for values out of range.
+    A restyle changes colours, widths, what is visible and the draw order; tiles are drawn anew. It shows what its
+    textures hold: no ids, no picking, no patterns, bands, hatches, slope corrections and outlines on one side; it takes
+    no edits. Raises StyleError for values out of range.
     """
 
     name = "clipmap"
@@ -49,6 +54,7 @@ class Clipmap(Technique):
     bevel_below: float = 90.0
     thin_below: float = 1.5
     widest_line: float = 10.0
+    widen: tuple[float, float] | None = None
     window: int | None = None
     samples: int = 4
     anisotropy: int = 8
@@ -65,10 +71,16 @@ class Clipmap(Technique):
             value = getattr(self, name)
             if value is None and name in ("window", "tiles_a_frame"):
                 continue
-            if not _is_number(value, name in WHOLE) or not least <= value <= most:
+            is_kind = is_whole if name in WHOLE else is_number
+            if not is_kind(value) or not least <= value <= most:
                 raise StyleError(f"Clipmap: {name} must be from {least:g} to {most:g}, but it is {value!r}.")
         if self.samples == 3:
             raise StyleError("Clipmap: samples must be 1, 2 or 4, but it is 3.")
+        if self.widen is not None and not _is_range(self.widen):
+            raise StyleError(
+                "Clipmap: widen must be two distances in metres, above 0 and rising, or None, but it is"
+                f" {self.widen!r}."
+            )
 
     def core_options(self) -> _core.TechniqueOptions:
         """As the core takes them."""
@@ -78,12 +90,16 @@ class Clipmap(Technique):
             bevel_below=float(self.bevel_below),
             thin_below=float(self.thin_below),
             widest_line=float(self.widest_line),
-            window=self.window or 0,
-            samples=self.samples,
-            anisotropy=self.anisotropy,
-            tiles_a_frame=self.tiles_a_frame or 0,
+            widen_from=0.0 if self.widen is None else float(self.widen[0]),
+            widen_to=0.0 if self.widen is None else float(self.widen[1]),
+            window=int(self.window or 0),
+            samples=int(self.samples),
+            anisotropy=int(self.anisotropy),
+            tiles_a_frame=int(self.tiles_a_frame or 0),
         )
 
 
-def _is_number(value: Any, whole: bool) -> bool:
-    return isinstance(value, int if whole else (int, float)) and not isinstance(value, bool)
+def _is_range(value: Any) -> bool:
+    if not is_listed(value) or len(value) != 2 or not all(is_number(one) for one in value):
+        return False
+    return bool(0.0 < value[0] <= value[1] < math.inf)

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from . import _core
+from ._values import is_number
 from .errors import InputError, StyleError, close_matches
 from .techniques import Technique
 
@@ -64,11 +65,11 @@ class Detail:
     def __post_init__(self) -> None:
         for name in ("screen", "uniform"):
             value = getattr(self, name)
-            if value is not None and not (_is_number(value) and value >= 0.0):
+            if value is not None and not (is_number(value) and 0.0 <= value < math.inf):
                 raise InputError(f"Detail: {name} must be zero or more, or None, but it is {value!r}.")
         for name in ("lens_tolerance", "heat_top"):
             value = getattr(self, name)
-            if not (_is_number(value) and value >= 0.0):
+            if not (is_number(value) and 0.0 <= value < math.inf):
                 raise InputError(f"Detail: {name} must be a number of zero or more, but it is {value!r}.")
         _check_choice("Detail", "shows", self.shows, SHOWS)
         if self.lens is not None and len(self.lens) != 3:
@@ -241,10 +242,6 @@ def _core_eye(camera: Camera, size: tuple[int, int]) -> _core.DetailEye:
         eye.pixels = 0.5 * height / math.tan(math.radians(0.5 * fitted.fov))
         eye.corner = 1.0 / math.hypot(1.0, 0.5 * math.hypot(width, height) / eye.pixels)
     return eye
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _check_choice(owner: str, name: str, value: Any, known: tuple[str, ...], more: str = "") -> None:

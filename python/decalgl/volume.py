@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from . import _core
+from ._values import is_number
 from .errors import StyleError
 from .techniques import Technique
 
@@ -18,8 +19,9 @@ class Volume(Technique):
         mask for each colour of a layer, in the order in which they first appear, as the thesis does.
     arc_step: degrees between the vertices of round corners and caps, 1 to 90.
 
-    It draws no antialias="coverage", no patterns, bands, hatches, slope corrections and outlines on one side, and stays
-    as it was prepared. Raises StyleError for values out of range.
+    A restyle changes colours, what is visible and the draw order, without meshing anew. It draws no
+    antialias="coverage", no patterns, bands, hatches, slope corrections and outlines on one side, and takes no
+    edits and no other widths. Raises StyleError for values out of range.
     """
 
     name = "volume"
@@ -30,7 +32,7 @@ class Volume(Technique):
     def __post_init__(self) -> None:
         if self.groups not in ("exact", "colors"):
             raise StyleError(f"Volume: groups must be 'exact' or 'colors', but it is {self.groups!r}.")
-        if not _is_number(self.arc_step) or not 1.0 <= self.arc_step <= 90.0:
+        if not is_number(self.arc_step) or not 1.0 <= self.arc_step <= 90.0:
             raise StyleError(
                 f"Volume: arc_step must be a number of degrees from 1 to 90, but it is {self.arc_step!r}."
             )
@@ -38,7 +40,3 @@ class Volume(Technique):
     def core_options(self) -> _core.TechniqueOptions:
         """As the core takes them."""
         return _core.VolumeOptions(exact=self.groups == "exact", arc_step=float(self.arc_step))
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from shapely import LineString, box
+from shapely import LineString, Polygon, box
 
 import decalgl as dg
 import judge
@@ -90,6 +90,31 @@ def test_every_solution_draws_lines_of_a_few_texels(solution: Any) -> None:
     assert rms(plain, clip) <= 9.0
 
 
+# Of a line a fifth of a texel wide: how dark it is, in that of the static one, and how unevenly along it. As triangles
+# it is ragged, more so with one sample a texel; a wireframe has a pair of lines in place of one.
+THIN = {
+    "4b": ({}, (0.95, 1.05), (0.0, 0.12)),
+    "2": ({}, (0.9, 1.1), (0.18, 0.3)),
+    "2 of one sample": ({"samples": 1}, (0.9, 1.15), (0.45, 0.7)),
+    "3b": ({}, (2.0, 3.0), (0.0, 0.12)),
+}
+
+
+@pytest.mark.parametrize("name", list(THIN))
+def test_thin_lines_are_as_dark_and_as_even_as_the_solution_allows(name: str) -> None:
+    options, dark, uneven = THIN[name]
+    darkness = []
+    for technique in (dg.Static(), dg.Clipmap(solution=name.split()[0], **options)):  # type: ignore[arg-type]
+        scene = flat_scene()
+        line = LineString([(5, 10), (95, 41)])
+        scene.add_lines([line], color="black", width=0.2, width_units="m", technique=technique)
+        image = draw(scene, antialias="none" if isinstance(technique, dg.Clipmap) else "coverage").image
+        darkness.append((image[0, 0, 1].astype(float) - image[:, 10:90, 1]).clip(0).sum(axis=0))
+    static, thin = darkness
+    assert dark[0] < thin.mean() / static.mean() < dark[1]
+    assert uneven[0] <= thin.std() / thin.mean() < uneven[1]
+
+
 def test_line_primitives_are_clamped() -> None:
     line = LineString([(0, 50), (100, 50)])
     widths = []
@@ -129,6 +154,87 @@ def test_wide_angles_are_mitred_and_sharp_ones_bevelled() -> None:
         reach.append(int((draw(scene).image[50, :, 1] < 128).nonzero()[0].max()))
     assert reach[0] == pytest.approx(60 + 8 / np.sin(np.arctan2(30, 40)), abs=1.5)
     assert reach[1] == pytest.approx(60 + 8 * np.sin(np.arctan2(30, 40)), abs=2.5)
+
+
+# Other looks, without preparing anew
+
+
+def drawn_after(change: dict[str, Any], scene: dg.Scene, size: tuple[int, int] = SIZE) -> dg.Frame:
+    """After a restyle, and a picture from before it."""
+    renderer = dg.Renderer(size=size, antialias="none")
+    renderer.preprocess(scene)
+    renderer.update(MAP)
+    renderer.render()
+    renderer.restyle(0, **change)
+    renderer.update(MAP)
+    return renderer.render()
+
+
+@pytest.mark.parametrize("joints", ["3a", "3b"])
+@pytest.mark.parametrize("solution", SOLUTIONS)
+def test_another_width_is_as_prepared_anew(solution: Any, joints: Any) -> None:
+    technique = dg.Clipmap(solution=solution, joints=joints)
+    # Where the line is as wide as this, inner borders meet beyond its segments.
+    for before, after in ((3.0, 14.0), (14.0, 0.3)):
+        wide = drawn_after({"width": after}, zigzag(technique, before))
+        np.testing.assert_array_equal(wide.image, draw(zigzag(technique, after)).image)
+
+
+def test_colors_order_and_what_is_visible_change() -> None:
+    boxes = [box(10, 10, 60, 60), box(40, 40, 90, 90)]
+    pictures = []
+    for looks in ({"color": ["red", "blue"]}, {"color": ["lime", "cyan"], "order": [2, 1]}):
+        scene = flat_scene()
+        scene.add_polygons(boxes, technique=dg.Clipmap(), **looks)
+        pictures.append(scene)
+    changed = drawn_after({"color": ["lime", "cyan"], "order": [2, 1]}, pictures[0])
+    np.testing.assert_array_equal(changed.image, draw(pictures[1]).image)
+    hidden = drawn_after({"visible": [True, False]}, pictures[0])
+    assert pixel(hidden, 50, 50) == (255, 0, 0, 255)
+    assert pixel(hidden, 80, 80) == pixel(hidden, 5, 95)
+
+
+def test_the_lens_shows_other_widths() -> None:
+    renderer = dg.Renderer(size=SIZE, antialias="none")
+    renderer.preprocess(zigzag(dg.Clipmap(), 2.0))
+    renderer.update(MAP)
+    renderer.lens = dg.Lens(circle=(50.0, 50.0, 20.0), styles={0: {"width": 12.0}})
+    frame = renderer.render()
+    from_centre = np.hypot(*(np.mgrid[:100, :100] - 49.5))
+    for width, is_here in ((12.0, from_centre < 19.0), (2.0, from_centre > 21.0)):
+        alone = draw(zigzag(dg.Clipmap(), width))
+        assert np.abs(frame.image[is_here].astype(int) - alone.image[is_here]).max() <= 1
+
+
+@pytest.mark.parametrize("solution", ["2", "4b"])
+def test_widths_grow_with_the_distance(solution: Any) -> None:
+    """Between near and far, lines are as wide on the screen from wherever one looks."""
+    technique = dg.Clipmap(solution=solution, widen=(100.0, 400.0))
+    widths = {}
+    for height in (50.0, 100.0, 200.0, 400.0, 800.0):
+        scene = dg.Scene(dg.Terrain.flat((-1000.0, -1000.0, 1000.0, 1000.0)))
+        line = LineString([(-1000, 3), (1000, 40)])
+        scene.add_lines([line], color="red", width=10.0, width_units="m", technique=technique)
+        scene.relief = judge.WHITE
+        camera = dg.Camera.look_at((0.0, 0.0, height), (0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0), fov=60.0)
+        covered = 1.0 - scene.render(camera, (200, 200), antialias="none").image[:, 100, 1] / 255.0
+        widths[height] = covered.sum() * 2.0 * height * np.tan(np.radians(30.0)) / 200.0
+    expected = [10.0, 10.0, 20.0, 40.0, 40.0]
+    assert list(widths.values()) == pytest.approx(expected, rel=0.05)
+
+
+def test_polygons_far_beyond_the_texture_stay_straight() -> None:
+    """A border that leads 10,000 times as far as the map is wide."""
+    pictures = []
+    for technique in (dg.Static(), dg.Clipmap()):
+        scene = flat_scene()
+        triangle = Polygon([(-1e6, -2e5), (1e6, 2.0001e5), (-1e6, 1e6)])
+        scene.add_polygons([triangle], color="red", technique=technique)
+        pictures.append(draw(scene, antialias="none"))
+    assert 0.2 < (pictures[0].image[..., 1] < 128).mean() < 0.95
+    assert rms(*pictures) < 14.0
+    apart = (pictures[0].image[..., 1] < 128) != (pictures[1].image[..., 1] < 128)
+    assert apart.sum() <= 100
 
 
 # Layers, levels and windows

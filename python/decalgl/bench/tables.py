@@ -154,6 +154,27 @@ FIELDS = {
     "÷ formula": "{field_memory:.2f}",
     "buffers": "{bytes_per_segment_stored:.1f} bytes a segment",
 }
+CLIPMAP = {
+    "lines": "{scene}",
+    "solution": "{way}",
+    "memory": "{prepared_megabytes:.2f} MB",
+    "÷ least": "{least_memory:.2f}",
+    "generate": "{generate_ms:.1f} ms",
+    "another width": "{width_ms:.1f} ms",
+    "tiles": "{tiles_ms:.0f} ms",
+    "÷ fastest": "{least_tiles:.2f}",
+    "wide alone": "{wide}",
+    "thin alone": "{thin}",
+    "picture": "{picture_ms:.0f} ms",
+}
+VOLUMES = {
+    "scene": "{scene}",
+    "technique": "{way}",
+    "memory": "{megabytes:.0f} MB",
+    "prepare": "{prepare_ms:.0f} ms",
+    "draw": "{draw_ms:.0f} ms",
+    "groups": "{groups:.0f}",
+}
 
 
 def summary(results: Results) -> str:
@@ -254,6 +275,31 @@ def loops(results: Results) -> str:
     return "\n\n".join([*made, machine(results)])
 
 
+def clipmap(results: Results) -> str:
+    """Sections 5.1 to 5.3 of the paper: each solution beside the best of its line set."""
+    found = [one for one in results["records"] if one["technique"].startswith("clipmap ")]
+    rows = []
+    for one in found:
+        same = [other for other in found if other["scene"] == one["scene"]]
+        alone = {key: f"{one[key + '_ms']:.0f} ms" if key + "_ms" in one else "" for key in ("wide", "thin")}
+        rows.append(
+            {
+                **one,
+                **alone,
+                "prepared_megabytes": one["prepared_bytes"] / 1e6,
+                "least_memory": one["prepared_bytes"] / min(other["prepared_bytes"] for other in same),
+                "least_tiles": one["tiles_ms"] / min(other["tiles_ms"] for other in same),
+            }
+        )
+    return _table(rows, CLIPMAP) or "No figures yet."
+
+
+def volumes(results: Results) -> str:
+    """Figure 5.5 of the thesis: medians of all views."""
+    found = [one for one in results["records"] if "way" in one and "groups" in one]
+    return _table([{**one, "megabytes": one["bytes"] / 1e6} for one in found], VOLUMES) or "No figures yet."
+
+
 BLOCKS: dict[str, Callable[[Results], str]] = {
     "summary": summary,
     "ratios": ratios,
@@ -263,6 +309,8 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "styles": styles,
     "changes": changes,
     "networks": networks,
+    "clipmap": clipmap,
+    "volumes": volumes,
     "loops": loops,
 }
 

@@ -11,13 +11,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
 import decalgl as dg
+from decalgl.road_styles import CLASSES, road_classes
 
 from . import cameras, contours, fetch, folders
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from numpy.typing import NDArray
 
     from .contours import Arrays, Say
 
@@ -59,7 +63,7 @@ class Workload:
     runs: int = 5
     depths: tuple[int, ...] = (10, 50, 100, 500, 1000, 2000)
     ring: tuple[int, int] = (5_000_000, 10_000)
-    towns: tuple[str, ...] = ("helsinki", "monaco")
+    towns: tuple[str, ...] = ("liechtenstein", "helsinki", "monaco")
 
     def runs_of(self, size: str) -> int:
         """How often to measure at a size."""
@@ -127,9 +131,36 @@ def real_ground() -> dg.Terrain:
     return _without_rim(dg.Terrain.open(path))
 
 
-def town_file(town: str) -> Path:
-    """A town's extract of OpenStreetMap, fetched where it is missing."""
-    (path,) = fetch.fetch(town, folders.data())
+def coast_file() -> Path:
+    """Coastlines of the world, fetched where they are missing."""
+    return _fetched("gshhg")
+
+
+def roads(town: str) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+    """The roads of a town in metres, and the rank of each, fetched where they are missing; or "streets" at random."""
+    places = {name: place for place, name in enumerate(CLASSES)}
+    if town == "streets":
+        return _streets()
+    import pyogrio
+
+    found = pyogrio.read_dataframe(_fetched(town), layer="lines", columns=["highway"])
+    found["class"] = road_classes(found["highway"])
+    found = found[found["class"].notna()]
+    found = found.to_crs(found.estimate_utm_crs())
+    return found.geometry.to_numpy(), found["class"].map(places).to_numpy(dtype=np.int64)
+
+
+def _streets() -> tuple[NDArray[np.object_], NDArray[np.int64]]:
+    generator = np.random.default_rng(9)
+    starts = generator.uniform(0.0, 1000.0, (60, 1, 2))
+    steps = generator.normal(0.0, 60.0, (60, 8, 2))
+    lines = np.asarray(shapely.linestrings(starts + np.cumsum(steps, axis=1)))
+    return lines, np.arange(60, dtype=np.int64) % len(CLASSES)
+
+
+def _fetched(data: str) -> Path:
+    """The file of a data set of one, fetched where it is missing."""
+    (path,) = fetch.fetch(data, folders.data())
     return path
 
 

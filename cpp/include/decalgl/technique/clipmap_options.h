@@ -24,6 +24,8 @@ struct ClipmapOptions : TechniqueOptions {
     double bevel_below = 90.0;  // degrees between the segments of a joint; wider ones by method 2
     double thin_below = 1.5;    // texels: thinner lines are line primitives (algorithm 2)
     double widest_line = 10.0;  // texels of a line primitive, to which wider ones are clamped
+    double widen_from = 0.0;    // metres from the camera to the ground: from here on widths grow as it does,
+    double widen_to = 0.0;      // up to here; 0: they stay
     int window = 0;             // texels of a level that are kept; 0: as many as the picture is wide
     int samples = 4;            // of a texel: 1, 2 or 4
     int anisotropy = 8;         // most samples along a pixel's longer side
@@ -32,8 +34,8 @@ struct ClipmapOptions : TechniqueOptions {
     bool equals(const TechniqueOptions& other) const override {
         const auto* options = dynamic_cast<const ClipmapOptions*>(&other);
         const auto members = [](const ClipmapOptions& o) {
-            return std::tie(o.solution, o.inner_meets, o.bevel_below, o.thin_below, o.widest_line, o.window,
-                            o.samples, o.anisotropy, o.tiles_a_frame);
+            return std::tie(o.solution, o.inner_meets, o.bevel_below, o.thin_below, o.widest_line,
+                            o.widen_from, o.widen_to, o.window, o.samples, o.anisotropy, o.tiles_a_frame);
         };
         return options != nullptr && members(*options) == members(*this);
     }

@@ -1,13 +1,20 @@
 // The virtual texture at each pixel: samples along the footprint's longer side, each between two levels of detail.
 //
-// GATHERED_FOOTPRINT   texels are samples from anywhere in the picture: their footprint is that of the picture's middle
+// GATHERED   texels are samples of pixels from anywhere in the picture     LENS   one side of the lens's border
 #include "technique/clipmap/place.glsl"
+#ifdef GATHERED
+#include "shared/gathered.glsl"
+#endif
 
 layout(location = 0) out vec4 color;
 
 uniform sampler2DArray tiles;
 uniform usampler2D table;  // x + 1, y + 1 of the tile that may be read in each slot
 uniform int window;        // tiles, a power of two
+#ifdef LENS
+uniform sampler2D lens_texture;  // the share of a pixel that is inside
+uniform int lens_side;           // 1: inside
+#endif
 
 bool is_there(ivec2 texel, int level) {
     ivec2 tile = texel >> tile_bits;
@@ -53,8 +60,10 @@ void main() {
         color = vec4(0.0);
         return;
     }
-#ifdef GATHERED_FOOTPRINT
-    Place place = place_of(position, surface, vec2(0.0));
+#ifdef GATHERED
+    // Where the sample lies, so that its footprint is that of its own ray on its own plane.
+    vec2 seen = vec2(gathered_pixel()) + 0.5 + vec2(picture.xy) - 0.5 * spacing.zw + gathered_offset();
+    Place place = place_of(position, surface, seen);
 #else
     Place place = place_of(position, surface, pixel_from_centre());
 #endif
@@ -72,4 +81,8 @@ void main() {
         tap += 1.0;
     } while (tap < place.taps);
     color = sum / place.taps;
+#ifdef LENS
+    float inside = texelFetch(lens_texture, pixel, 0).x;
+    color *= lens_side == 1 ? inside : 1.0 - inside;
+#endif
 }

@@ -1,128 +1,94 @@
 // From layers to what tiles are drawn from.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
-#include "decalgl/core/error.h"
 #include "technique/clipmap/line_strips.h"
 #include "technique/clipmap/prepared_clipmap.h"
+#include "technique/plain_styles.h"
+#include "vector/clip_polygon.h"
 
 namespace decalgl::clipmap {
 namespace {
 
-constexpr size_t chunk_segments = 64;
-// How far vertices may lie from the virtual texture's corner, in quanta: twice its side beyond it on either side.
+constexpr int32_t chunk_segments = 64;
+// How far vertices may lie from the virtual texture's corner, in quanta: half its side beyond it on either side.
 constexpr double lattice_reach = 1 << (lattice_bits - 1);
+constexpr double farthest_place = lattice_reach + (1 << lattice_bits);
 
-[[noreturn]] void refuse(const Layer& layer, const std::string& what) {
-    throw Error(ErrorKind::unsupported, "layer '" + layer.name + "': technique 'clipmap' cannot draw " +
-                                            what +
-                                            "; leave that out, or draw the layer with technique 'static'");
-}
-
-void check_layer(const Layer& layer) {
-    for (const Stroke* stroke : {&layer.stroke, &layer.casing}) {
-        if (stroke->empty())
-            continue;
-        for (const StrokeStyle& style : stroke->styles) {
-            if (style.pattern.period > 0.0)
-                refuse(layer, "patterns along lines");
-            if (!style.bands.empty())
-                refuse(layer, "bands of colour across lines");
-            if (style.slope_correction != SlopeCorrection::none)
-                refuse(layer, "widths that are corrected on slopes");
-        }
-    }
-    if (layer.features.kind != FeatureKind::polygons)
-        return;
-    if (!layer.stroke.empty() && layer.outline_mode != OutlineMode::normal)
-        refuse(layer, "outlines on one side of a border");
-    if (layer.fill.empty())
-        return;
-    for (const Hatch& hatch : layer.fill.hatches)
-        if (hatch.spacing > 0.0)
-            refuse(layer, "hatches");
-    if (layer.triangles.first_of.size() != layer.features.feature_count() + 1)
-        throw Error(
-            ErrorKind::unsupported,
-            "layer '" + layer.name +
-                "': technique 'clipmap' needs polygons cut into triangles (Layer::triangles), which the "
-                "Python package does; set them, or draw the layer with technique 'static'");
+// Other techniques' options and none are the default.
+ClipmapOptions options_of(const Layer& layer) {
+    const auto* chosen = dynamic_cast<const ClipmapOptions*>(layer.technique.options.get());
+    return chosen != nullptr ? *chosen : ClipmapOptions{};
 }
 
 bool within_reach(Vector2 p) {
-    constexpr double farthest = lattice_reach + (1 << lattice_bits);
-    return p.x >= -lattice_reach && p.y >= -lattice_reach && p.x <= farthest && p.y <= farthest;
+    return p.x >= -lattice_reach && p.y >= -lattice_reach && p.x <= farthest_place && p.y <= farthest_place;
+}
+
+Vector2 rounded(Vector2 p) {
+    return {std::nearbyint(p.x), std::nearbyint(p.y)};
 }
 
 class ClipmapBuilder {
 public:
-    ClipmapBuilder(const TechniqueInput& input, PreparedClipmap& prepared)
-        : input_(input), prepared_(prepared) {}
+    ClipmapBuilder(const TechniqueInput& input, ClipmapGeometry& geometry)
+        : input_(input), geometry_(geometry) {}
 
     void build(Progress& progress) {
-        const std::vector<Decal> decals = decals_of(input_.layers, input_.first_layer);
-        for (size_t i = 0; i < decals.size(); ++i) {
-            const DecalView view{&input_.layers[decals[i].feature.layer - input_.first_layer], decals[i]};
-            const uint8_t* color = view.color();
-            prepared_.decals.push_back(
-                {{color[0], color[1], color[2], color[3]}, static_cast<float>(view.half_width())});
-            if (view.decal.is_stroke())
+        geometry_.decals = decals_of(input_.layers, input_.first_layer, Hidden::kept);
+        for (const Decal& decal : geometry_.decals) {
+            geometry_.first_chunk_of.push_back(static_cast<uint32_t>(geometry_.chunks.size()));
+            const DecalView view{&input_.layers[decal.feature.layer - input_.first_layer], decal};
+            if (decal.is_stroke())
                 add_stroke(view);
             else
                 add_fill(view);
-            if (i % 1024 == 0) {
-                progress.report(static_cast<double>(i) / static_cast<double>(decals.size()));
-                prepared_.charge.resize(bytes());
+            if (++done_ % 1024 == 0) {
+                progress.report(static_cast<double>(done_) / static_cast<double>(geometry_.decals.size()));
+                geometry_.charge.resize(geometry_.bytes());
             }
         }
-        prepared_.charge.resize(bytes());
+        geometry_.first_chunk_of.push_back(static_cast<uint32_t>(geometry_.chunks.size()));
+        geometry_.charge.resize(geometry_.bytes());
     }
 
 private:
-    uint64_t bytes() const {
-        return prepared_.fills.size() * sizeof(PlacedVertex) + prepared_.lines.size() * sizeof(PlacedVertex) +
-               prepared_.mesh.size() * sizeof(PlacedVertex) +
-               prepared_.offsets.size() * sizeof(OffsetVertex) + prepared_.chunks.size() * sizeof(Chunk) +
-               prepared_.decals.size() * sizeof(ClipmapDecal);
-    }
-
     Vector2 place(const double* xy) const {
-        const double quantum = prepared_.texture.quantum();
-        return {(xy[0] - prepared_.texture.left) / quantum, (xy[1] - prepared_.texture.bottom) / quantum};
+        const double quantum = geometry_.texture.quantum();
+        return {(xy[0] - geometry_.texture.left) / quantum, (xy[1] - geometry_.texture.bottom) / quantum};
     }
-
-    uint32_t decal() const { return static_cast<uint32_t>(prepared_.decals.size() - 1); }
 
     PlacedVertex placed(Vector2 p) const {
-        return {static_cast<int32_t>(std::lrint(p.x)), static_cast<int32_t>(std::lrint(p.y)), decal()};
-    }
-
-    static void widen(LatticeBox& box, Vector2 p, double reach) {
-        const auto limited = [](double value) {
-            return static_cast<int32_t>(std::clamp(value, -2147483000.0, 2147483000.0));
-        };
-        box.min_x = std::min(box.min_x, limited(std::floor(p.x - reach)));
-        box.min_y = std::min(box.min_y, limited(std::floor(p.y - reach)));
-        box.max_x = std::max(box.max_x, limited(std::ceil(p.x + reach)));
-        box.max_y = std::max(box.max_y, limited(std::ceil(p.y + reach)));
+        return {static_cast<int32_t>(std::lrint(p.x)), static_cast<int32_t>(std::lrint(p.y)), done_};
     }
 
     void add_fill(const DecalView& view) {
         const Triangles& triangles = view.layer->triangles;
         const auto first = triangles.first_of[view.feature()], end = triangles.first_of[view.feature() + 1];
         for (int64_t t = first; t < end; t += chunk_segments) {
-            Chunk chunk{decal(), false, {}, {static_cast<int32_t>(prepared_.fills.size()), 0}, {}, {}, {}};
+            Chunk chunk{done_, false, {}, {static_cast<int32_t>(geometry_.fills.size()), 0}, {}, {}, {}};
             const int64_t last = std::min<int64_t>(end, t + chunk_segments);
-            for (int64_t corner = 3 * t; corner < 3 * last; ++corner) {
-                Vector2 p = place(&triangles.coordinates[2 * static_cast<size_t>(corner)]);
-                const double farthest = lattice_reach + std::ldexp(1.0, lattice_bits);
-                p = {std::clamp(p.x, -lattice_reach, farthest), std::clamp(p.y, -lattice_reach, farthest)};
-                widen(chunk.box, p, 0.0);
-                prepared_.fills.push_back(placed(p));
+            for (int64_t each = t; each < last; ++each)
+                add_triangle(&triangles.coordinates[6 * static_cast<size_t>(each)], chunk);
+            if (chunk.fill.count > 0)
+                geometry_.chunks.push_back(chunk);
+        }
+    }
+
+    // What leaves the lattice is cut off.
+    void add_triangle(const double* corners, Chunk& chunk) {
+        const std::array<Vector2, 3> triangle{place(corners), place(corners + 2), place(corners + 4)};
+        std::vector<Vector2> inside(triangle.begin(), triangle.end());
+        if (!std::all_of(inside.begin(), inside.end(), within_reach))
+            inside = clip_to_square(triangle, -lattice_reach, farthest_place);
+        for (size_t i = 2; i < inside.size(); ++i)
+            for (const Vector2& corner : {inside[0], inside[i - 1], inside[i]}) {
+                geometry_.fills.push_back(placed(corner));
+                chunk.box.add(lattice::LatticePoint{geometry_.fills.back().x, geometry_.fills.back().y});
                 ++chunk.fill.count;
             }
-            prepared_.chunks.push_back(chunk);
-        }
     }
 
     void add_stroke(const DecalView& view) {
@@ -131,23 +97,20 @@ private:
              part < features.feature_offsets[view.feature() + 1]; ++part) {
             const Span<const double> xy = features.part(static_cast<size_t>(part));
             std::vector<Vector2> line;
-            for (size_t i = 0; i < xy.size(); i += 2) {
-                const Vector2 p = place(&xy[i]);
-                if (line.empty() || line.back().x != p.x || line.back().y != p.y)
-                    line.push_back(p);
-            }
+            for (size_t i = 0; i < xy.size(); i += 2)
+                line.push_back(place(&xy[i]));
             const bool ring = features.kind == FeatureKind::polygons;
             if (ring && line.size() > 2 &&
                 (line.front().x != line.back().x || line.front().y != line.back().y))
                 line.push_back(line.front());
-            cut_to_reach(line, 2.0 * view.half_width() / prepared_.texture.quantum());
+            cut_to_reach(line);
         }
     }
 
     // What leaves the lattice is cut off, and splits a line.
-    void cut_to_reach(const std::vector<Vector2>& line, double width) {
+    void cut_to_reach(const std::vector<Vector2>& line) {
         if (std::all_of(line.begin(), line.end(), within_reach)) {
-            add_line(line, 0.5 * width);
+            add_line(line);
             return;
         }
         std::vector<Vector2> run;
@@ -155,24 +118,23 @@ private:
             Vector2 from = line[i], to = line[i + 1];
             if (cut(from, to)) {
                 if (run.empty() || run.back().x != from.x || run.back().y != from.y) {
-                    add_line(run, 0.5 * width);
+                    add_line(run);
                     run = {from};
                 }
                 run.push_back(to);
             }
         }
-        add_line(run, 0.5 * width);
+        add_line(run);
     }
 
     // The part of a segment within reach; false where there is none.
     static bool cut(Vector2& from, Vector2& to) {
-        const double farthest = lattice_reach + std::ldexp(1.0, lattice_bits);
         double begin = 0.0, end = 1.0;
         const Vector2 along{to.x - from.x, to.y - from.y};
         const auto limit = [&](double start, double step) {
             if (step == 0.0)
-                return start >= -lattice_reach && start <= farthest;
-            const double a = (-lattice_reach - start) / step, b = (farthest - start) / step;
+                return start >= -lattice_reach && start <= farthest_place;
+            const double a = (-lattice_reach - start) / step, b = (farthest_place - start) / step;
             begin = std::max(begin, std::min(a, b));
             end = std::min(end, std::max(a, b));
             return begin < end;
@@ -187,125 +149,104 @@ private:
         return true;
     }
 
-    void add_line(const std::vector<Vector2>& line, double half_width) {
+    // Vertices are rounded first: whatever is tessellated from them later is what is tessellated now.
+    void add_line(const std::vector<Vector2>& places) {
+        std::vector<Vector2> line;
+        for (const Vector2& each : places) {
+            const Vector2 p = rounded(each);
+            if (line.empty() || line.back().x != p.x || line.back().y != p.y)
+                line.push_back(p);
+        }
         if (line.size() < 2)
             return;
         const bool closed =
             line.size() >= 4 && line.front().x == line.back().x && line.front().y == line.back().y;
-        const LineSolution solution = prepared_.options.solution;
-        const bool with_lines = solution == LineSolution::primitives || solution == LineSolution::both ||
-                                solution == LineSolution::geometry;
-        const bool with_mesh = solution == LineSolution::polygons || solution == LineSolution::both ||
-                               solution == LineSolution::wireframe;
-        const bool with_offsets =
-            solution == LineSolution::offsets || solution == LineSolution::polar_offsets;
-        const size_t first_chunk = prepared_.chunks.size();
-        add_chunks(line, half_width);
-        if (with_lines)
-            add_path(line, closed, first_chunk);
-        if (with_mesh || with_offsets)
-            add_pairs(line,
-                      corner_pairs(line, closed, half_width,
-                                   {prepared_.options.bevel_below, prepared_.options.inner_meets}),
-                      half_width, with_mesh, first_chunk);
-    }
-
-    void add_chunks(const std::vector<Vector2>& line, double half_width) {
-        // A joint by method 2 reaches farther than the line is wide.
-        const double half_angle = 0.5 * prepared_.options.bevel_below * 3.14159265358979323846 / 180.0;
-        const double reach = half_width / std::max(0.02, std::sin(half_angle)) + 1.0;
+        const size_t first_chunk = geometry_.chunks.size();
         for (size_t first = 0; first + 1 < line.size(); first += chunk_segments) {
-            Chunk chunk{decal(), true, {}, {}, {}, {}, {}};
+            Chunk chunk{done_, true, {}, {}, {}, {}, {}};
             const size_t last = std::min(line.size() - 1, first + chunk_segments);
             for (size_t i = first; i <= last; ++i)
-                widen(chunk.box, line[i], reach);
-            prepared_.chunks.push_back(chunk);
+                chunk.box.add(lattice::LatticePoint{placed(line[i]).x, placed(line[i]).y});
+            geometry_.chunks.push_back(chunk);
+        }
+        Path path{done_, add_vertices(line, closed), static_cast<int32_t>(geometry_.pair_count), closed};
+        set_lines(path, first_chunk);
+        if (geometry_.has_mesh() || geometry_.has_offsets()) {
+            set_pairs(line, closed, first_chunk);
+            geometry_.paths.push_back(path);
         }
     }
 
     // The line with the vertex before its first one and after its last: those of the other end of a ring, or the same.
-    void add_path(const std::vector<Vector2>& line, bool closed, size_t first_chunk) {
-        const auto start = static_cast<int32_t>(prepared_.lines.size());
-        prepared_.lines.push_back(placed(closed ? line[line.size() - 2] : line.front()));
+    VertexRange add_vertices(const std::vector<Vector2>& line, bool closed) {
+        geometry_.lines.push_back(placed(closed ? line[line.size() - 2] : line.front()));
+        const auto first = static_cast<int32_t>(geometry_.lines.size());
         for (const Vector2& p : line)
-            prepared_.lines.push_back(placed(p));
-        prepared_.lines.push_back(placed(closed ? line[1] : line.back()));
-        for (size_t first = 0, chunk = first_chunk; first + 1 < line.size();
-             first += chunk_segments, ++chunk) {
-            const size_t last = std::min(line.size() - 1, first + chunk_segments);
-            prepared_.chunks[chunk].line = {start + 1 + static_cast<int32_t>(first),
-                                            static_cast<int32_t>(last - first + 1)};
-        }
+            geometry_.lines.push_back(placed(p));
+        geometry_.lines.push_back(placed(closed ? line[1] : line.back()));
+        return {first, static_cast<int32_t>(line.size())};
     }
 
-    void add_pairs(const std::vector<Vector2>& line, const std::vector<CornerPair>& pairs, double half_width,
-                   bool with_mesh, size_t first_chunk) {
-        const auto start_mesh = static_cast<int32_t>(prepared_.mesh.size());
-        const auto start_offsets = static_cast<int32_t>(prepared_.offsets.size());
-        std::vector<int32_t> first_pair(line.size(), 0), last_pair(line.size(), 0);
-        for (size_t i = 0; i < pairs.size(); ++i) {
-            const CornerPair& pair = pairs[i];
-            if (i == 0 || pairs[i - 1].vertex != pair.vertex)
-                first_pair[pair.vertex] = static_cast<int32_t>(i);
-            last_pair[pair.vertex] = static_cast<int32_t>(i);
-            const Vector2 at = line[pair.vertex];
-            if (with_mesh) {
-                for (const Vector2& offset : {pair.left, pair.right})
-                    prepared_.mesh.push_back(
-                        placed({at.x + half_width * offset.x, at.y + half_width * offset.y}));
-                continue;
-            }
-            const PlacedVertex vertex = placed(at);
-            prepared_.offsets.push_back({vertex.x, vertex.y, vertex.decal, packed(pair)});
-        }
-        for (size_t first = 0, chunk = first_chunk; first + 1 < line.size();
-             first += chunk_segments, ++chunk) {
+    void set_lines(const Path& path, size_t chunk) {
+        for (int32_t first = 0; first + 1 < path.line.count; first += chunk_segments, ++chunk)
+            geometry_.chunks[chunk].line = {
+                path.line.first + first,
+                std::min(path.line.count - first, static_cast<int32_t>(chunk_segments) + 1)};
+    }
+
+    // A joint between two chunks belongs to the first with all its pairs.
+    void set_pairs(const std::vector<Vector2>& line, bool closed, size_t chunk) {
+        const std::vector<CornerPair> pairs =
+            corner_pairs(line, closed, 1.0, {geometry_.options.bevel_below, geometry_.options.inner_meets});
+        const auto start = static_cast<int32_t>(geometry_.pair_count);
+        std::vector<int32_t> last_pair(line.size(), 0);
+        for (size_t i = 0; i < pairs.size(); ++i)
+            last_pair[pairs[i].vertex] = static_cast<int32_t>(i);
+        for (size_t first = 0; first + 1 < line.size(); first += chunk_segments, ++chunk) {
             const size_t last = std::min(line.size() - 1, first + chunk_segments);
-            // A joint between two chunks belongs to the first with all its pairs.
             const int32_t begin = first == 0 ? 0 : last_pair[first], end = last_pair[last] + 1;
-            if (with_mesh)
-                prepared_.chunks[chunk].mesh = {start_mesh + 2 * begin, 2 * (end - begin)};
-            else
-                prepared_.chunks[chunk].offsets = {start_offsets + begin, end - begin};
+            geometry_.chunks[chunk].mesh = {2 * (start + begin), 2 * (end - begin)};
+            geometry_.chunks[chunk].offsets = {start + begin, end - begin};
         }
-    }
-
-    std::array<float, 4> packed(const CornerPair& pair) const {
-        const auto number = [](double value) { return static_cast<float>(value); };
-        if (prepared_.options.solution == LineSolution::offsets)
-            return {number(pair.left.x), number(pair.left.y), number(pair.right.x), number(pair.right.y)};
-        return {number(length(pair.left)), number(std::atan2(pair.left.y, pair.left.x)),
-                number(length(pair.right)), number(std::atan2(pair.right.y, pair.right.x))};
+        geometry_.pair_count += pairs.size();
     }
 
     const TechniqueInput& input_;
-    PreparedClipmap& prepared_;
+    ClipmapGeometry& geometry_;
+    uint32_t done_ = 0;  // decals
 };
 
 }  // namespace
 
 std::unique_ptr<const PreparedClipmap> build_clipmap(const TechniqueInput& input, Progress& progress) {
     for (const Layer& layer : input.layers)
-        check_layer(layer);
-    auto prepared = std::make_unique<PreparedClipmap>();
-    prepared->charge = MemoryCharge(input.memory, "clipmap: prepared", 0);
-    prepared->texture = VirtualTexture::over(input.bounds, input.positions);
-    if (const auto* options = dynamic_cast<const ClipmapOptions*>(input.layers[0].technique.options.get()))
-        prepared->options = *options;
-    ClipmapBuilder(input, *prepared).build(progress);
+        require_plain_styles(layer, "clipmap");
+    auto geometry = std::make_shared<ClipmapGeometry>();
+    geometry->charge = MemoryCharge(input.memory, prepared_name, 0);
+    geometry->texture = VirtualTexture::over(input.bounds, input.positions);
+    geometry->options = options_of(input.layers[0]);
+    geometry->first_layer = input.first_layer;
+    geometry->segments = segments_of(input.layers);
     for (const Layer& layer : input.layers) {
-        const Features& features = layer.features;
-        prepared->features += features.feature_count();
-        const uint64_t fewer = features.kind == FeatureKind::polygons ? 0 : features.part_count();
-        prepared->segments += features.vertex_count() - std::min<uint64_t>(fewer, features.vertex_count());
+        geometry->features += layer.features.feature_count();
+        geometry->outlines.push_back(layer.outline_order);
     }
+    ClipmapBuilder(input, *geometry).build(progress);
+    auto prepared = std::make_unique<PreparedClipmap>();
+    for (const Decal& decal : geometry->decals)
+        prepared->looks.push_back(look_of({&input.layers[decal.feature.layer - input.first_layer], decal}));
+    prepared->upwards.resize(geometry->decals.size());
+    std::iota(prepared->upwards.begin(), prepared->upwards.end(), 0U);
+    prepared->tessellation = tessellate(*geometry, prepared->looks, 1.0, input.memory);
+    if (!geometry->draws_lines() && !geometry->is_tessellated_anew()) {
+        geometry->lines = {};
+        geometry->paths = {};
+        geometry->charge.resize(geometry->bytes());
+    }
+    prepared->geometry = std::move(geometry);
+    prepared->order_chunks();
     progress.report(1.0);
     return prepared;
-}
-
-PreparedCounts PreparedClipmap::counts() const {
-    return {features, segments, fills.size() + lines.size() + mesh.size() + offsets.size(), charge.bytes(),
-            texture.texel(finest_level)};
 }
 
 }  // namespace decalgl::clipmap

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "decalgl/technique/technique.h"
+#include "decalgl/terrain/heightfield.h"
 #include "technique/clipmap/tile_painter.h"
 
 namespace decalgl {
@@ -24,20 +25,36 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
+    enum class LensSide : int { outside, inside };
+
+    // What is seen outside the lens, or inside.
+    struct Side {
+        std::shared_ptr<const clipmap::PreparedClipmap> prepared;
+        clipmap::TilePainter painter;
+        clipmap::TileStore store;
+        double wider = 1.0;
+
+        size_t bytes() const { return painter.bytes() + store.bytes(); }
+    };
+
+    void update_side(const View& view, Side& side);
+    double wider_for(const View& view, const clipmap::ClipmapOptions& options) const;
     void set_place(const View& view, const GBufferView& gbuffer, gl::Program& program) const;
     std::vector<clipmap::Tile> needed_tiles(const View& view, const GBufferView& gbuffer,
                                             gl::ProgramLibrary& programs);
-    void draw_tiles(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void draw_tiles(const View& view, std::vector<clipmap::Tile> needed, Side& side,
+                    gl::ProgramLibrary& programs);
+    void draw_side(const View& view, const GBufferView& gbuffer, LensSide lens_side,
+                   gl::ProgramLibrary& programs);
 
-    std::shared_ptr<const clipmap::PreparedClipmap> prepared_;
+    Side outside_;
+    Side inside_;  // nothing prepared: no lens
+    Heightfield terrain_;
     MemoryAccount memory_;
-    clipmap::TilePainter painter_;
-    clipmap::TileStore store_;
     gl::Texture2D feedback_;
     gl::Framebuffer feedback_framebuffer_;
     gl::VertexArray no_vertices_;
     bool in_areas_ = false;  // the picture in hand is one of coverage
-    uint64_t tiles_drawn_ = 0;
 };
 
 }  // namespace decalgl

@@ -14,24 +14,35 @@ namespace decalgl::clipmap {
 
 class TilePainter {
 public:
-    TilePainter() = default;
-    TilePainter(const PreparedClipmap& prepared, const MemoryAccount& memory);
-
-    void draw(const PreparedClipmap& prepared, const Tile& tile, const TileStore& store,
-              gl::ProgramLibrary& programs);
+    // From now on draws these, in widths so many times as large; uploads what is not there yet.
+    void use(std::shared_ptr<const PreparedClipmap> prepared, double wider, const MemoryAccount& memory);
+    void draw(const Tile& tile, const TileStore& store, gl::ProgramLibrary& programs);
     size_t bytes() const;
 
 private:
     enum class Form { fill, line, mesh, wire, adjacent, offsets, thin_offsets };
 
-    static Form form_of(const PreparedClipmap& prepared, const Chunk& chunk, double texels);
-    static VertexRange range_of(const Chunk& chunk, Form form);
-    void draw_run(const PreparedClipmap& prepared, Form form, double texels, const Tile& tile,
-                  gl::ProgramLibrary& programs);
+    // Vertices on the GPU, and the array that they came from.
+    struct Vertices {
+        gl::Buffer buffer;
+        gl::VertexArray array;
+        const void* from = nullptr;
 
+        template <typename Values>
+        void upload(const Values& values, const MemoryAccount& memory);
+    };
+
+    Form form_of(const Chunk& chunk, double texels) const;
+    static VertexRange range_of(const Chunk& chunk, Form form);
+    void make_canvas(const MemoryAccount& memory);
+    void draw_run(Form form, double texels, const Tile& tile, gl::ProgramLibrary& programs);
+    const Vertices& vertices_of(Form form) const;
+
+    std::shared_ptr<const PreparedClipmap> prepared_;
+    double wider_ = 1.0;
+    Tessellation tessellation_;  // of the widths in hand
     gl::TextureBuffer decals_;
-    gl::Buffer fills_, lines_, mesh_, offsets_;
-    gl::VertexArray fill_array_, line_array_, mesh_array_, offset_array_;
+    Vertices fills_, lines_, mesh_, offsets_;
     gl::Texture2D canvas_;
     gl::Framebuffer canvas_framebuffer_;
     gl::ObjectHandle layer_framebuffer_;

@@ -50,6 +50,10 @@ TileStore::TileStore(int window, const MemoryAccount& memory)
     table_ = gl::Texture2D::create(memory, "clipmap: table", GL_RGBA16UI, window, window * level_count);
 }
 
+void TileStore::forget() {
+    std::fill(slots_.begin(), slots_.end(), Slot{});
+}
+
 size_t TileStore::slot_of(const Tile& tile) const {
     const int mask = window_ - 1;
     return static_cast<size_t>((tile.level * window_ + (tile.y & mask)) * window_ + (tile.x & mask));

@@ -19,6 +19,8 @@ public:
     TileStore(int window, const MemoryAccount& memory);
 
     int window() const { return window_; }
+    // No tile is there any more: what they are drawn from has changed.
+    void forget();
     // Sets which tiles the picture in hand may read; returns those that are not there yet, coarse ones first. Those
     // beyond a level's window, which is where the most are wanted, are left out. `wanted`: as often as pixels ask.
     std::vector<Tile> choose(std::vector<Tile> wanted);

@@ -12,8 +12,8 @@
 
 #include "decalgl/core/large_array.h"
 #include "decalgl/technique/technique.h"
-#include "technique/distance_field/height_ranges.h"
 #include "technique/distance_field/network_layout.h"
+#include "terrain/height_ranges.h"
 
 namespace decalgl::network {
 

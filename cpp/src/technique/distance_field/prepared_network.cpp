@@ -5,6 +5,7 @@
 
 #include "decalgl/core/error.h"
 #include "technique/distance_field/mends.h"
+#include "technique/plain_styles.h"
 
 namespace decalgl::network {
 namespace {
@@ -27,13 +28,6 @@ std::vector<FeatureReference> references_of(const TechniqueInput& input) {
         for (uint32_t f = 0; f < input.layers[i].features.feature_count(); ++f)
             references.push_back({input.first_layer + i, f});
     return references;
-}
-
-uint64_t segments_of(Span<const Layer> layers) {
-    uint64_t segments = 0;
-    for (const Layer& layer : layers)
-        segments += layer.features.vertex_count() - layer.features.part_count();
-    return segments;
 }
 
 // Only rows and looks of a layer: its geometry is in the network.
@@ -95,7 +89,8 @@ std::unique_ptr<PreparedNetwork> prepare_network(const TechniqueInput& input, Pr
     prepared->reach = prepared->table.reach;
     auto network = std::make_shared<Network>(build_network(input, prepared->reach, progress));
     prepared->charge = charge_for(*network, input.memory);
-    prepared->ranges = std::make_shared<HeightRanges>(*input.terrain, input.threads, input.memory);
+    prepared->ranges =
+        std::make_shared<HeightRanges>(*input.terrain, input.threads, input.memory, "distance_field: ground");
     set_heights(*network, *prepared->ranges, prepared->reach);
     mend(*network, prepared->table, *prepared->options);
     prepared->network = std::move(network);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "technique/distance_field/categories.h"
-#include "technique/distance_field/height_ranges.h"
 #include "technique/distance_field/network.h"
+#include "terrain/height_ranges.h"
 
 namespace decalgl::network {
 

@@ -7,6 +7,7 @@
 #include "core/archive.h"
 #include "core/growing_array.h"
 #include "decalgl/core/error.h"
+#include "technique/decal_looks.h"
 #include "technique/dynamic_lines/prepared_lines.h"
 
 namespace decalgl {
@@ -52,19 +53,9 @@ bool fit_together(const PreparedLines& lines) {
 }  // namespace
 
 LayerLook PreparedLines::look_of(uint32_t layer, size_t features) const {
-    LayerLook result;
-    result.layer = layer;
-    for (size_t slot = 0; slot < slots.size(); ++slot) {
-        const Decal& decal = slots[slot];
-        if (decal.feature.layer != layer || decal.feature.feature >= features)
-            continue;
-        DecalLook& look = *result.of(decal.role);
-        look.colors.resize(4 * features, 0);
-        look.widths.resize(features, 0.0);
-        std::memcpy(&look.colors[size_t{4} * decal.feature.feature], &styles[slot].color, 4);
-        look.widths[decal.feature.feature] = 2.0 * static_cast<double>(styles[slot].half_width);
-    }
-    return result;
+    return layer_look(
+        slots, layer, features, [&](size_t i) { return reinterpret_cast<const uint8_t*>(&styles[i].color); },
+        [&](size_t i) { return 2.0 * static_cast<double>(styles[i].half_width); });
 }
 
 std::shared_ptr<const Prepared> PreparedLines::restyled(Span<const LayerLook> looks,

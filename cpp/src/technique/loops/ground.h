@@ -2,10 +2,9 @@
 // a way. A pyramid over the heightfield, each block with the extremes of its quads.
 #pragma once
 
-#include <vector>
-
 #include "decalgl/terrain/heightfield.h"
 #include "technique/loops/lattice.h"
+#include "terrain/pyramid.h"
 
 namespace decalgl::loops {
 
@@ -30,16 +29,10 @@ public:
     GroundRange everywhere() const { return all_; }
 
 private:
-    struct Level {
-        int32_t columns;
-        int32_t rows;
-        std::vector<GroundRange> blocks;
-    };
-
     Lattice lattice_;
     double x0_, y0_, dx_, dy_;  // of a block
+    Pyramid<GroundRange> blocks_;
     GroundRange all_;
-    std::vector<Level> levels_;
 };
 
 }  // namespace decalgl::loops

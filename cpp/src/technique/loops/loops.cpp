@@ -91,7 +91,7 @@ void Loops::make_cells(const View& view) {
     const gl::PassTimer timer(view.timings, "loops: cells");
     const LoopsIndex& index = *prepared_->index();
     const LoopsDetail& detail = prepared_->detail();
-    CellsKey key{loops::Sight(view, index.lattice, index.heights), detail.has_eye ? detail.eye : eye_of(view),
+    CellsKey key{loops::Sight(view, index.lattice, index.heights), detail.has_eye ? detail.eye : detail_eye_of(view),
                  detail, prepared_->slots()};
     if (key_ && key_->sight == key.sight && same(key_->eye, key.eye) && key_->detail == detail &&
         key_->slots == key.slots)
@@ -248,7 +248,7 @@ void Loops::set_detail(gl::Program& program, const View& view) const {
     }
     if (detail.screen < 0.0 && detail.steps.empty())
         return;
-    const DetailEye eye = detail.has_eye ? detail.eye : eye_of(view);
+    const DetailEye eye = detail.has_eye ? detail.eye : detail_eye_of(view);
     const glm::dvec2 place((eye.eye[0] - lattice.left) / lattice.quantum,
                            (eye.eye[1] - lattice.bottom) / lattice.quantum);
     const glm::dvec2 nearest = glm::clamp(glm::round(place), -1.0 * (1 << 30), 1.0 * (1 << 30));

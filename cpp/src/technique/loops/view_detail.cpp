@@ -5,6 +5,7 @@
 
 #include "shared/view_block.h"
 #include "technique/loops/half_float.h"
+#include "technique/view_base.h"
 
 namespace decalgl::loops {
 namespace {
@@ -48,18 +49,12 @@ std::array<std::vector<Place>, 6> faces_of(const Place& low, const Place& high) 
 
 }  // namespace
 
-DetailEye eye_of(const View& view) {
+DetailEye detail_eye_of(const View& view) {
     const ViewBlock& block = *view.block;
     DetailEye eye;
-    const double base[] = {view.positions.origin_x + block.base_block.x * view.positions.block_size +
-                               double{block.base_offset.x},
-                           view.positions.origin_y + block.base_block.y * view.positions.block_size +
-                               double{block.base_offset.y},
-                           double{block.base_sample_fraction.z} + double{block.base_sample_fraction.w}};
-    for (int axis = 0; axis < 3; ++axis) {
+    eye.eye = eye_of(view);
+    for (int axis = 0; axis < 3; ++axis)
         eye.forward[size_t(axis)] = double{block.forward[axis]};
-        eye.eye[size_t(axis)] = base[axis] - double{block.forward.w} * double{block.forward[axis]};
-    }
     const auto step = double{glm::length(glm::vec3(block.ray_direction_dy))};
     eye.pixels = step > 0.0 ? 1.0 / step : 0.0;
     eye.corner = 1.0 / std::hypot(1.0, 0.5 * step * std::hypot(double(view.width), double(view.height)));
@@ -69,7 +64,7 @@ DetailEye eye_of(const View& view) {
 
 Sight::Sight(const View& view, const Lattice& lattice, const GroundRange& heights) {
     const ViewBlock& block = *view.block;
-    const DetailEye eye = eye_of(view);
+    const DetailEye eye = detail_eye_of(view);
     const bool is_flat = eye.pixels == 0.0;
     const glm::dvec3 forward(block.forward), direction(block.ray_direction);
     const glm::dvec3 at_eye(eye.eye[0] - lattice.left, eye.eye[1] - lattice.bottom, eye.eye[2]);

@@ -16,7 +16,7 @@
 namespace decalgl::loops {
 
 // The camera of a view, out of what all passes are told of it.
-DetailEye eye_of(const View& view);
+DetailEye detail_eye_of(const View& view);
 
 // Where normal * place + offset is below 0, nothing is seen. Metres from the lattice's origin; heights as they are.
 struct SightPlane {

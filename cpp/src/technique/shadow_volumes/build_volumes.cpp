@@ -1,8 +1,13 @@
 // From layers to volumes: decals are cut into triangles and stretched on all cores, then grouped by colour.
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/growing_array.h"
 #include "decalgl/core/error.h"
+#include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
+#include "technique/plain_styles.h"
 #include "technique/shadow_volumes/color_groups.h"
 #include "technique/shadow_volumes/stroke_pieces.h"
 #include "technique/shadow_volumes/volume_mesh.h"
@@ -12,42 +17,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-[[noreturn]] void refuse(const Layer& layer, const std::string& what) {
-    throw Error(ErrorKind::unsupported, "layer '" + layer.name + "': technique 'volume' cannot draw " + what +
-                                            "; leave that out, or draw the layer with technique 'static'");
-}
-
-void check_stroke(const Layer& layer, const Stroke& stroke) {
-    if (stroke.empty())
-        return;
-    for (const StrokeStyle& style : stroke.styles) {
-        if (style.pattern.period > 0.0)
-            refuse(layer, "patterns along lines");
-        if (!style.bands.empty())
-            refuse(layer, "bands of colour across lines");
-        if (style.slope_correction != SlopeCorrection::none)
-            refuse(layer, "widths that are corrected on slopes");
-    }
-}
-
-void check_layer(const Layer& layer) {
-    check_stroke(layer, layer.stroke);
-    check_stroke(layer, layer.casing);
-    if (layer.features.kind != FeatureKind::polygons)
-        return;
-    if (!layer.stroke.empty() && layer.outline_mode != OutlineMode::normal)
-        refuse(layer, "outlines on one side of a border");
-    if (layer.fill.empty())
-        return;
-    for (const Hatch& hatch : layer.fill.hatches)
-        if (hatch.spacing > 0.0)
-            refuse(layer, "hatches");
-    if (layer.triangles.first_of.size() != layer.features.feature_count() + 1)
-        throw Error(
-            ErrorKind::unsupported,
-            "layer '" + layer.name +
-                "': technique 'volume' needs polygons cut into triangles (Layer::triangles), which the "
-                "Python package does; set them, or draw the layer with technique 'static'");
+// Other techniques' options and none are the default.
+VolumeOptions options_of(const Layer& layer) {
+    const auto* chosen = dynamic_cast<const VolumeOptions*>(layer.technique.options.get());
+    return chosen != nullptr ? *chosen : VolumeOptions{};
 }
 
 class VolumeBuilder {
@@ -55,7 +28,8 @@ public:
     VolumeBuilder(const TechniqueInput& input, PreparedVolumes& prepared)
         : input_(input),
           prepared_(prepared),
-          heights_(*input.terrain, prepared.lattice, input.memory),
+          arc_step_(options_of(input.layers[0]).arc_step * pi / 180.0),
+          heights_(*input.terrain, input.threads, input.memory, "volume: working memory"),
           cells_(estimated_triangles()) {}
 
     void build(Progress& progress) {
@@ -68,14 +42,8 @@ public:
         };
         parallel_for(prepared_.decals.size(), grain, input_.threads, mesh,
                      [&](double share) { progress.report(0.5 * share); });
+        prepared_.height_steps = {heights_.lowest(), static_cast<float>(heights_.step())};
         join(blocks);
-        std::vector<std::array<uint8_t, 4>> colors;
-        for (const Decal& decal : prepared_.decals) {
-            const uint8_t* color = view_of(decal).color();
-            colors.push_back({color[0], color[1], color[2], color[3]});
-        }
-        group_by_color(colors, options_.grouping, cells_, prepared_, progress);
-        count_bytes();
     }
 
 private:
@@ -83,7 +51,7 @@ private:
     class DecalMesher {
     public:
         DecalMesher(const VolumeBuilder& builder, MeshedVolumes& block)
-            : builder_(builder), mesher_(builder.heights_, block) {}
+            : builder_(builder), mesher_(builder.prepared_.lattice, builder.heights_, block) {}
 
         void mesh(uint32_t decal) {
             const DecalView view = builder_.view_of(builder_.prepared_.decals[decal]);
@@ -114,9 +82,7 @@ private:
             in_cell_.resize(builder_.cells_.count(), 0);
             const StrokeStyle& style = view.style();
             const StrokeShape shape{view.half_width() / builder_.prepared_.lattice.quantum, style.corner,
-                                    style.cap, style.miter_limit, builder_.options_.arc_step * pi / 180.0};
-            most_ =
-                most_over_each_other({view.color()[0], view.color()[1], view.color()[2], view.color()[3]});
+                                    style.cap, style.miter_limit, builder_.arc_step_};
             const Features& features = view.layer->features;
             const PieceFn add = [&](Span<const Vector2> corners) { add_piece(corners, decal); };
             for (int64_t part = features.feature_offsets[view.feature()];
@@ -138,7 +104,7 @@ private:
                     continue;  // all of it is cut anew, and lies in the outermost cells
                 const Triangle triangle{rounded(corners[0]), rounded(corners[i - 1]), rounded(corners[i])};
                 builder_.cells_.for_each(triangle, [&](size_t cell) {
-                    fits = fits && in_cell_[cell] + corners.size() <= most_;
+                    fits = fits && in_cell_[cell] + corners.size() <= most_over_each_other;
                     touched_.push_back(cell);
                 });
             }
@@ -161,7 +127,6 @@ private:
 
         const VolumeBuilder& builder_;
         VolumeMesher mesher_;
-        uint32_t most_ = 0;
         std::vector<uint16_t> in_cell_;  // triangles of the volume in hand
         std::vector<size_t> touched_;
         std::vector<size_t> used_;
@@ -179,113 +144,130 @@ private:
     }
 
     void join(std::vector<MeshedVolumes>& blocks) {
-        uint64_t vertices = 0, corners = 0;
+        uint64_t vertex_count = 0, corner_count = 0;
         for (const MeshedVolumes& block : blocks) {
-            vertices += block.vertices.size();
-            corners += block.corners.size();
+            vertex_count += block.vertices.size();
+            corner_count += block.corners.size();
         }
         constexpr uint64_t most = uint64_t{1} << 31;
-        if (2 * vertices >= most || corners >= most)
+        if (2 * vertex_count >= most || corner_count >= most)
             throw Error(ErrorKind::memory,
                         "technique 'volume': the meshes would have more than 2^31 corners; draw fewer "
-                        "features, or use "
-                        "technique 'static'");
-        prepared_.charge.resize(vertices * sizeof(VolumeVertex) + corners * sizeof(uint32_t));
-        prepared_.vertices.reserve(vertices);
-        prepared_.corners.reserve(corners);
+                        "features, or use technique 'static'");
+        MemoryCharge charge(input_.memory, "volume: working memory",
+                            vertex_count * sizeof(VolumeVertex) + corner_count * sizeof(uint16_t));
+        LargeArray<VolumeVertex> vertices;
+        LargeArray<uint16_t> corners;
+        std::vector<Volume> volumes;
+        vertices.reserve(vertex_count);
+        corners.reserve(corner_count);
+        uint32_t base = 0;
         for (MeshedVolumes& block : blocks) {
-            const auto first_vertex = static_cast<uint32_t>(prepared_.vertices.size());
-            const auto first_corner = static_cast<uint32_t>(prepared_.corners.size());
-            for (Volume volume : block.volumes) {
+            const auto first_vertex = static_cast<uint32_t>(vertices.size());
+            const auto first_corner = static_cast<uint32_t>(corners.size());
+            for (size_t i = 0; i < block.volumes.size(); ++i) {
+                Volume volume = block.volumes[i];
+                const uint32_t own = first_vertex + volume.first_vertex;
+                const uint32_t end = i + 1 < block.volumes.size()
+                                         ? first_vertex + block.volumes[i + 1].first_vertex
+                                         : first_vertex + static_cast<uint32_t>(block.vertices.size());
+                // Volumes that count from one vertex are drawn at once.
+                if (end - base > most_vertices)
+                    base = own;
+                volume.first_vertex = base;
+                for (uint32_t k = 0; k < volume.corner_count; ++k)
+                    corners.push_back(
+                        static_cast<uint16_t>(block.corners[volume.first_corner + k] + 2 * (own - base)));
                 volume.first_corner += first_corner;
-                prepared_.volumes.push_back(volume);
+                volumes.push_back(volume);
             }
-            prepared_.vertices.insert(prepared_.vertices.end(), block.vertices.begin(), block.vertices.end());
-            for (const uint32_t corner : block.corners)
-                prepared_.corners.push_back(corner + 2 * first_vertex);
+            vertices.insert(vertices.end(), block.vertices.begin(), block.vertices.end());
             block = {};
         }
-        prepared_.first_volume_of.assign(prepared_.decals.size() + 1, 0);
-        for (const Volume& volume : prepared_.volumes)
-            ++prepared_.first_volume_of[volume.decal + 1];
-        for (size_t i = 1; i < prepared_.first_volume_of.size(); ++i)
-            prepared_.first_volume_of[i] += prepared_.first_volume_of[i - 1];
+        std::vector<uint32_t> first_volume_of(prepared_.decals.size() + 1, 0);
+        for (const Volume& volume : volumes)
+            ++first_volume_of[volume.decal + 1];
+        std::partial_sum(first_volume_of.begin(), first_volume_of.end(), first_volume_of.begin());
+        charge = {};
+        keep(std::move(vertices), prepared_.vertices);
+        keep(std::move(corners), prepared_.corners);
+        keep(std::move(volumes), prepared_.volumes);
+        keep(std::move(first_volume_of), prepared_.first_volume_of);
     }
 
-    void count_bytes() {
-        prepared_.charge.resize(prepared_.vertices.size() * sizeof(VolumeVertex) +
-                                prepared_.corners.size() * sizeof(uint32_t) +
-                                prepared_.volumes.size() * (sizeof(Volume) + sizeof(uint32_t)) +
-                                prepared_.decals.size() * (sizeof(Decal) + sizeof(uint32_t)));
+    template <typename Values, typename T>
+    void keep(Values values, SharedArray<T>& into) const {
+        into = charged(SharedArray<T>(std::move(values)), input_.memory, prepared_name);
     }
 
     const TechniqueInput& input_;
     PreparedVolumes& prepared_;
-    const VolumeOptions default_options_;
-    const VolumeOptions& options_ = chosen_options();
+    double arc_step_;  // radians
     HeightRanges heights_;
     OverlapCells cells_;
-
-    const VolumeOptions& chosen_options() const {
-        const auto* chosen = dynamic_cast<const VolumeOptions*>(input_.layers[0].technique.options.get());
-        return chosen != nullptr ? *chosen : default_options_;
-    }
 };
-
-// A ring of n vertices has n edges, a line of n vertices n - 1 segments.
-void count_segments(const TechniqueInput& input, PreparedVolumes& prepared) {
-    for (const Layer& layer : input.layers) {
-        const Features& features = layer.features;
-        prepared.features += features.feature_count();
-        const uint64_t fewer = features.kind == FeatureKind::polygons ? 0 : features.part_count();
-        prepared.segments += features.vertex_count() - std::min<uint64_t>(fewer, features.vertex_count());
-    }
-}
 
 }  // namespace
 
 std::unique_ptr<const PreparedVolumes> build_volumes(const TechniqueInput& input, Progress& progress) {
     for (const Layer& layer : input.layers)
-        check_layer(layer);
+        require_plain_styles(layer, "volume");
     auto prepared = std::make_unique<PreparedVolumes>();
-    prepared->charge = MemoryCharge(input.memory, "volume: prepared", 0);
     prepared->lattice = Lattice::over(input.bounds);
-    prepared->decals = decals_of(input.layers, input.first_layer);
-    for (const Decal& decal : prepared->decals)
-        prepared->widest =
-            std::max(prepared->widest,
-                     DecalView{&input.layers[decal.feature.layer - input.first_layer], decal}.half_width());
-    count_segments(input, *prepared);
+    prepared->grouping = options_of(input.layers[0]).grouping;
+    prepared->first_layer = input.first_layer;
+    prepared->segments = segments_of(input.layers);
+    std::vector<OutlineOrder> outlines;
+    for (const Layer& layer : input.layers) {
+        prepared->features += layer.features.feature_count();
+        outlines.push_back(layer.outline_order);
+    }
+    std::vector<Decal> decals = decals_of(input.layers, input.first_layer, Hidden::kept);
+    std::vector<PlainLook> looks;
+    for (const Decal& decal : decals)
+        looks.push_back(look_of({&input.layers[decal.feature.layer - input.first_layer], decal}));
+    std::vector<uint32_t> upwards(decals.size());
+    std::iota(upwards.begin(), upwards.end(), 0U);
+    const auto keep = [&](auto values) {
+        using Value = typename decltype(values)::value_type;
+        return charged(SharedArray<Value>(std::move(values)), input.memory, prepared_name);
+    };
+    prepared->outlines = keep(std::move(outlines));
+    prepared->decals = keep(std::move(decals));
+    prepared->looks = keep(std::move(looks));
+    prepared->upwards = keep(std::move(upwards));
     VolumeBuilder(input, *prepared).build(progress);
+    group_by_color(*prepared, input.memory, progress);
     progress.report(1.0);
     return prepared;
 }
 
 PreparedCounts PreparedVolumes::counts() const {
-    return {features, segments, corners.size() / 3, charge.bytes(), lattice.quantum};
+    const uint64_t bytes = decals.size_bytes() + first_volume_of.size_bytes() + volumes.size_bytes() +
+                           vertices.size_bytes() + corners.size_bytes() + looks.size_bytes() +
+                           upwards.size_bytes() + groups.size_bytes() + batches.size_bytes() +
+                           drawn.size_bytes();
+    return {features, segments, corners.size() / 3, bytes, lattice.quantum};
 }
 
-std::vector<FeatureReference> PreparedVolumes::query(const SeenPoint& point) const {
+std::vector<FeatureReference> PreparedVolumes::query(const SeenPoint& seen) const {
     std::vector<FeatureReference> found;
-    const Vector2 place = lattice.place(point.x, point.y);
+    const Vector2 place = lattice.place(seen.x, seen.y);
     if (!on_lattice(place))
         return found;
     const LatticePoint p = rounded(place);
-    const auto corner = [&](uint32_t i) {
-        return LatticePoint{vertices[corners[i] / 2].x, vertices[corners[i] / 2].y};
-    };
     const auto covers = [&](const Volume& volume) {
         for (uint32_t i = volume.first_corner; i < volume.first_corner + volume.lid_corners; i += 3) {
-            const LatticePoint a = corner(i), b = corner(i + 1), c = corner(i + 2);
+            const LatticePoint a = point(volume, i), b = point(volume, i + 1), c = point(volume, i + 2);
             if (doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0)
                 return true;
         }
         return false;
     };
-    for (size_t decal = decals.size(); decal-- > 0;) {
-        for (uint32_t i = first_volume_of[decal]; i < first_volume_of[decal + 1]; ++i) {
-            const Volume& volume = volumes[volumes_of[i]];
-            if (!volume.box.holds(p) || !covers(volume))
+    for (size_t rank = upwards.size(); rank-- > 0;) {
+        const uint32_t decal = upwards[rank];
+        for (uint32_t i = first_volume_of[decal]; shows(decal) && i < first_volume_of[decal + 1]; ++i) {
+            if (!volumes[i].box.holds(p) || !covers(volumes[i]))
                 continue;
             // A feature may show more than one of its decals.
             const FeatureReference feature = decals[decal].feature;

@@ -1,89 +1,113 @@
 #include "technique/shadow_volumes/color_groups.h"
 
 #include <map>
-#include <numeric>
 #include <tuple>
+#include <utility>
+
+#include "core/growing_array.h"
+#include "technique/shadow_volumes/overlap_cells.h"
 
 namespace decalgl::volume {
 namespace {
 
-using Color = std::array<uint8_t, 4>;
+constexpr uint32_t no_group = UINT32_MAX;
 
 bool is_opaque(const Color& color) {
     return color[3] == 255;
 }
 
-// The triangles of the map that a volume covers.
+uint32_t most_counted(const Color& color) {
+    return is_opaque(color) ? 255 : most_over_each_other;
+}
+
+Triangle lid_at(const PreparedVolumes& prepared, const Volume& volume, uint32_t corner) {
+    return {prepared.point(volume, corner), prepared.point(volume, corner + 1),
+            prepared.point(volume, corner + 2)};
+}
+
+// The triangles of the map that a volume covers, and the first corner of each.
 template <typename TriangleFn>
 void for_each_lid(const PreparedVolumes& prepared, const Volume& volume, TriangleFn use) {
-    const auto point = [&](uint32_t corner) {
-        const VolumeVertex& vertex = prepared.vertices[prepared.corners[corner] / 2];
-        return LatticePoint{vertex.x, vertex.y};
-    };
     const uint32_t end = volume.first_corner + volume.lid_corners;
     for (uint32_t i = volume.first_corner; i < end; i += 3)
-        use(Triangle{point(i), point(i + 1), point(i + 2)}, i);
+        use(lid_at(prepared, volume, i), i);
 }
+
+uint64_t lid_count(const PreparedVolumes& prepared) {
+    uint64_t corners = 0;
+    for (const Volume& volume : prepared.volumes)
+        corners += volume.lid_corners;
+    return corners / 3;
+}
+
+struct Grouped {
+    std::vector<uint32_t> group_of;  // each decal's; of those that show nothing, none
+    std::vector<Color> groups;
+};
 
 // Gives each decal its group, from the bottom to the top.
 class ExactGrouping {
 public:
-    ExactGrouping(Span<const Color> colors, const OverlapCells& cells, PreparedVolumes& prepared)
-        : colors_(colors), cells_(cells), prepared_(prepared), in_cell_(cells.count()) {}
+    ExactGrouping(const PreparedVolumes& prepared, const OverlapCells& cells)
+        : prepared_(prepared), cells_(cells), in_cell_(cells.count()) {}
 
-    std::vector<uint32_t> run(Progress& progress) {
-        group_of_.assign(colors_.size(), 0);
-        for (uint32_t decal = 0; decal < colors_.size(); ++decal) {
-            group_of_[decal] = group_at_or_above(colors_[decal], lowest_group(decal));
+    Grouped run(Progress& progress) {
+        const size_t count = prepared_.decals.size();
+        grouped_.group_of.assign(count, no_group);
+        for (size_t i = 0; i < count; ++i) {
+            const uint32_t decal = prepared_.upwards[i];
+            if (!prepared_.shows(decal))
+                continue;
+            grouped_.group_of[decal] = group_at_or_above(color_of(decal), lowest_group(decal));
             enter(decal);
-            if (decal % 1024 == 0)
-                progress.report(0.5 + 0.3 * decal / static_cast<double>(colors_.size()));
+            if (i % 1024 == 0)
+                progress.report(0.5 + 0.3 * static_cast<double>(i) / static_cast<double>(count));
         }
-        return std::move(group_of_);
+        return std::move(grouped_);
     }
 
 private:
     struct Entry {
         uint32_t decal;
-        uint32_t first_corner;
+        uint32_t volume;
+        uint32_t corner;   // the triangle's first
         uint32_t highest;  // group of this and those before it
     };
     using Cell = std::vector<Entry>;
+    struct Place {
+        uint32_t volume;
+        uint32_t corner;
+    };
 
-    template <typename VolumeFn>
-    void for_each_volume(uint32_t decal, VolumeFn use) const {
+    const Color& color_of(uint32_t decal) const { return prepared_.looks[decal].color; }
+
+    // Calls back with each triangle of a decal, where it stands, and each cell that it touches.
+    template <typename CellFn>
+    void for_each_cell(uint32_t decal, CellFn use) const {
         for (uint32_t i = prepared_.first_volume_of[decal]; i < prepared_.first_volume_of[decal + 1]; ++i)
-            use(prepared_.volumes[i]);
+            for_each_lid(prepared_, prepared_.volumes[i], [&](const Triangle& triangle, uint32_t corner) {
+                cells_.for_each(triangle, [&](size_t cell) { use(triangle, Place{i, corner}, cell); });
+            });
     }
 
     // The lowest that a decal may go into when it lies over one of this group.
     uint32_t above(uint32_t decal, uint32_t below) const {
-        const bool same = colors_[decal] == colors_[below] && is_opaque(colors_[decal]);
-        return group_of_[below] + (same ? 0 : 1);
+        const bool same = color_of(decal) == color_of(below) && is_opaque(color_of(decal));
+        return grouped_.group_of[below] + (same ? 0 : 1);
     }
 
     uint32_t lowest_group(uint32_t decal) const {
         uint32_t lowest = 0;
-        const auto raise = [&](const Triangle& triangle, const Cell& cell) {
+        for_each_cell(decal, [&](const Triangle& triangle, Place, size_t at) {
+            const Cell& cell = in_cell_[at];
             // The latest are the highest as a rule: then nothing below needs a look.
             for (size_t i = cell.size(); i-- > 0 && cell[i].highest >= lowest;) {
-                const Entry& entry = cell[i];
-                const uint32_t needed = above(decal, entry.decal);
-                if (needed <= lowest)
-                    continue;
-                const auto corner = [&](uint32_t k) {
-                    const VolumeVertex& at =
-                        prepared_.vertices[prepared_.corners[entry.first_corner + k] / 2];
-                    return LatticePoint{at.x, at.y};
-                };
-                if (lie_over_each_other(triangle, {corner(0), corner(1), corner(2)}))
+                const uint32_t needed = above(decal, cell[i].decal);
+                if (needed > lowest &&
+                    lie_over_each_other(triangle,
+                                        lid_at(prepared_, prepared_.volumes[cell[i].volume], cell[i].corner)))
                     lowest = needed;
             }
-        };
-        for_each_volume(decal, [&](const Volume& volume) {
-            for_each_lid(prepared_, volume, [&](const Triangle& triangle, uint32_t) {
-                cells_.for_each(triangle, [&](size_t cell) { raise(triangle, in_cell_[cell]); });
-            });
         });
         return lowest;
     }
@@ -93,49 +117,56 @@ private:
         const auto found = std::lower_bound(known.begin(), known.end(), lowest);
         if (found != known.end())
             return *found;
-        known.push_back(static_cast<uint32_t>(prepared_.groups.size()));
-        prepared_.groups.push_back({color});
+        known.push_back(static_cast<uint32_t>(grouped_.groups.size()));
+        grouped_.groups.push_back(color);
         return known.back();
     }
 
     void enter(uint32_t decal) {
-        for_each_volume(decal, [&](const Volume& volume) {
-            for_each_lid(prepared_, volume, [&](const Triangle& triangle, uint32_t first_corner) {
-                cells_.for_each(triangle, [&](size_t at) {
-                    Cell& cell = in_cell_[at];
-                    const uint32_t before = cell.empty() ? 0 : cell.back().highest;
-                    cell.push_back({decal, first_corner, std::max(before, group_of_[decal])});
-                });
-            });
+        for_each_cell(decal, [&](const Triangle&, Place place, size_t at) {
+            Cell& cell = in_cell_[at];
+            const uint32_t before = cell.empty() ? 0 : cell.back().highest;
+            cell.push_back({decal, place.volume, place.corner, std::max(before, grouped_.group_of[decal])});
         });
     }
 
-    Span<const Color> colors_;
+    const PreparedVolumes& prepared_;
     const OverlapCells& cells_;
-    PreparedVolumes& prepared_;
     std::vector<Cell> in_cell_;
-    std::vector<uint32_t> group_of_;
+    Grouped grouped_;
     std::map<Color, std::vector<uint32_t>> groups_of_;
 };
 
-bool has_one_opaque_color(Span<const Color> colors) {
-    return std::all_of(colors.begin(), colors.end(),
-                       [&](const Color& color) { return color == colors[0] && is_opaque(color); });
+bool has_one_opaque_color(const PreparedVolumes& prepared) {
+    const Color* first = nullptr;
+    for (uint32_t i = 0; i < prepared.decals.size(); ++i) {
+        if (!prepared.shows(i))
+            continue;
+        const Color& color = prepared.looks[i].color;
+        if (!is_opaque(color) || (first != nullptr && *first != color))
+            return false;
+        first = &color;
+    }
+    return true;
 }
 
 // One group for each colour of each layer and role.
-std::vector<uint32_t> groups_by_color(Span<const Color> colors, PreparedVolumes& prepared) {
+Grouped groups_by_color(const PreparedVolumes& prepared) {
+    Grouped grouped;
+    grouped.group_of.assign(prepared.decals.size(), no_group);
     std::map<std::tuple<uint32_t, DecalRole, Color>, uint32_t> known;
-    std::vector<uint32_t> group_of;
-    for (size_t i = 0; i < colors.size(); ++i) {
+    for (const uint32_t i : prepared.upwards) {
+        if (!prepared.shows(i))
+            continue;
         const Decal& decal = prepared.decals[i];
-        const auto [place, is_new] = known.try_emplace({decal.feature.layer, decal.role, colors[i]},
-                                                       static_cast<uint32_t>(prepared.groups.size()));
+        const Color& color = prepared.looks[i].color;
+        const auto [place, is_new] = known.try_emplace({decal.feature.layer, decal.role, color},
+                                                       static_cast<uint32_t>(grouped.groups.size()));
         if (is_new)
-            prepared.groups.push_back({colors[i]});
-        group_of.push_back(place->second);
+            grouped.groups.push_back(color);
+        grouped.group_of[i] = place->second;
     }
-    return group_of;
+    return grouped;
 }
 
 // Bits of x and y in turn.
@@ -219,55 +250,46 @@ struct VolumeOrder {
     }
 };
 
-void sort_volumes(std::vector<VolumeOrder> order, PreparedVolumes& prepared) {
+void set_drawn(std::vector<VolumeOrder> order, PreparedVolumes& prepared, const MemoryAccount& memory) {
     std::sort(order.begin(), order.end());
-    std::vector<Volume> sorted;
-    sorted.reserve(order.size());
-    for (const VolumeOrder& each : order) {
-        const auto place = static_cast<uint32_t>(sorted.size());
+    std::vector<uint32_t> drawn;
+    std::vector<Batch> batches;
+    drawn.reserve(order.size());
+    for (size_t i = 0; i < order.size(); ++i) {
         const bool goes_on =
-            place > 0 && order[place - 1].group == each.group && order[place - 1].batch == each.batch;
+            i > 0 && order[i - 1].group == order[i].group && order[i - 1].batch == order[i].batch;
         if (!goes_on)
-            prepared.batches.push_back({each.group, place, 0});
-        ++prepared.batches.back().volume_count;
-        sorted.push_back(prepared.volumes[each.volume]);
+            batches.push_back({order[i].group, static_cast<uint32_t>(i), 0});
+        ++batches.back().volume_count;
+        drawn.push_back(order[i].volume);
     }
-    // Volumes were sorted by decal; now decals list theirs.
-    prepared.volumes_of.resize(sorted.size());
-    std::vector<uint32_t> next = prepared.first_volume_of;
-    for (uint32_t i = 0; i < sorted.size(); ++i)
-        prepared.volumes_of[next[sorted[i].decal]++] = i;
-    prepared.volumes = std::move(sorted);
+    prepared.batches = charged(SharedArray<Batch>(std::move(batches)), memory, prepared_name);
+    prepared.drawn = charged(SharedArray<uint32_t>(std::move(drawn)), memory, prepared_name);
 }
 
 }  // namespace
 
-uint32_t most_over_each_other(const Color& color) {
-    return is_opaque(color) ? 255 : 127;
-}
-
-void group_by_color(Span<const Color> colors, Grouping grouping, const OverlapCells& cells,
-                    PreparedVolumes& prepared, Progress& progress) {
-    if (colors.empty())
-        return;
-    const bool is_simple = grouping == Grouping::colors || has_one_opaque_color(colors);
-    const std::vector<uint32_t> group_of =
-        is_simple ? groups_by_color(colors, prepared) : ExactGrouping(colors, cells, prepared).run(progress);
+void group_by_color(PreparedVolumes& prepared, const MemoryAccount& memory, Progress& progress) {
+    const OverlapCells cells(lid_count(prepared));
+    const bool is_simple = prepared.grouping == Grouping::colors || has_one_opaque_color(prepared);
+    Grouped grouped = is_simple ? groups_by_color(prepared) : ExactGrouping(prepared, cells).run(progress);
     std::vector<VolumeOrder> order;
     for (uint32_t i = 0; i < prepared.volumes.size(); ++i) {
-        const Volume& volume = prepared.volumes[i];
-        order.push_back({group_of[volume.decal], 0, morton(volume.box), i});
+        const uint32_t group = grouped.group_of[prepared.volumes[i].decal];
+        if (group != no_group)
+            order.push_back({group, 0, morton(prepared.volumes[i].box), i});
     }
     std::sort(order.begin(), order.end());
     BatchFiller filler(cells, prepared);
     for (size_t i = 0; i < order.size(); ++i) {
         if (i == 0 || order[i].group != order[i - 1].group)
-            filler.begin_group(most_over_each_other(prepared.groups[order[i].group].color));
+            filler.begin_group(most_counted(grouped.groups[order[i].group]));
         order[i].batch = filler.batch_of(prepared.volumes[order[i].volume]);
         if (i % 1024 == 0)
             progress.report(0.8 + 0.2 * static_cast<double>(i) / static_cast<double>(order.size()));
     }
-    sort_volumes(std::move(order), prepared);
+    prepared.groups = charged(SharedArray<Color>(std::move(grouped.groups)), memory, prepared_name);
+    set_drawn(std::move(order), prepared, memory);
 }
 
 }  // namespace decalgl::volume

@@ -8,17 +8,15 @@
 // the stencil can count. Translucent groups leave a bit of it for what earlier batches have covered: 127.
 #pragma once
 
-#include "decalgl/technique/volume_options.h"
-#include "technique/shadow_volumes/overlap_cells.h"
+#include "decalgl/core/progress.h"
 #include "technique/shadow_volumes/prepared_volumes.h"
 
 namespace decalgl::volume {
 
-// As many as one volume, or one batch, may have over each other.
-uint32_t most_over_each_other(const std::array<uint8_t, 4>& color);
+// As many triangles as one volume may have over any place: what a batch of a translucent group counts.
+constexpr uint32_t most_over_each_other = 127;
 
-// Sorts the volumes, makes groups and batches. Throws Error(cancelled).
-void group_by_color(Span<const std::array<uint8_t, 4>> colors, Grouping grouping, const OverlapCells& cells,
-                    PreparedVolumes& prepared, Progress& progress);
+// From looks and order to groups, batches and the volumes that are drawn. Throws Error(memory), Error(cancelled).
+void group_by_color(PreparedVolumes& prepared, const MemoryAccount& memory, Progress& progress);
 
 }  // namespace decalgl::volume

@@ -11,6 +11,7 @@
 
 #include "core/lattice_points.h"
 #include "decalgl/core/position_grid.h"
+#include "vector/stroke_reach.h"
 
 namespace decalgl::volume {
 
@@ -20,11 +21,6 @@ using lattice::LatticePoint;
 
 constexpr int lattice_bits = 30;
 constexpr double lattice_extent = 1 << lattice_bits;
-
-struct Vector2 {
-    double x = 0.0;
-    double y = 0.0;
-};
 
 struct Lattice {
     double left = 0.0;  // metres, of (0, 0)
@@ -45,6 +41,10 @@ struct Lattice {
         return lattice;
     }
 
+    Bounds bounds(const LatticeBox& box) const {
+        return {left + box.min_x * quantum, bottom + box.min_y * quantum, left + box.max_x * quantum,
+                bottom + box.max_y * quantum};
+    }
     // In quanta, not rounded.
     Vector2 place(double x, double y) const { return {(x - left) / quantum, (y - bottom) / quantum}; }
 };

@@ -20,40 +20,11 @@ namespace {
 constexpr GLuint counted_bits = 0x7F;  // of translucent groups
 constexpr GLint covered_bit = 0x80;    // by earlier batches
 
-[[noreturn]] void refuse_files() {
-    throw Error(
-        ErrorKind::unsupported,
-        "technique 'volume' is not kept on disk; draw the layer with technique 'static' to save the scene");
-}
-
-[[noreturn]] void refuse_changes() {
-    throw Error(
-        ErrorKind::unsupported,
-        "technique 'volume' stays as it was prepared; draw the layer with technique 'static' to restyle or "
-        "edit it");
-}
-
 }  // namespace
 
-void PreparedVolumes::save(ArchiveWriter&, const std::string&) const {
-    refuse_files();
-}
-
-LayerLook PreparedVolumes::look_of(uint32_t, size_t) const {
-    refuse_changes();
-}
-
-std::shared_ptr<const Prepared> PreparedVolumes::restyled(Span<const LayerLook>, const MemoryAccount&) const {
-    refuse_changes();
-}
-
-std::shared_ptr<const Prepared> PreparedVolumes::edited(const LayerEdit&, const MemoryAccount&) const {
-    refuse_changes();
-}
-
-std::unique_ptr<const Prepared> ShadowVolumes::open(const ArchiveReader&, const std::string&,
+std::unique_ptr<const Prepared> ShadowVolumes::open(const ArchiveReader& archive, const std::string& prefix,
                                                     const MemoryAccount&) const {
-    refuse_files();
+    return volume::open_volumes(archive, prefix);
 }
 
 std::unique_ptr<const Prepared> ShadowVolumes::preprocess(const TechniqueInput& input,
@@ -61,17 +32,21 @@ std::unique_ptr<const Prepared> ShadowVolumes::preprocess(const TechniqueInput& 
     return volume::build_volumes(input, progress);
 }
 
-void ShadowVolumes::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
+void ShadowVolumes::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                            const TerrainView&, const MemoryAccount& memory) {
-    prepared_ = std::static_pointer_cast<const PreparedVolumes>(std::move(prepared));
+    outside_ = std::static_pointer_cast<const PreparedVolumes>(std::move(prepared));
+    inside_ = std::static_pointer_cast<const PreparedVolumes>(std::move(lens));
+    if (mesh_ && uploaded_ == outside_->vertices.data())
+        return;
+    mesh_ = {};
     vertices_ = {};
     corners_ = {};
-    const auto span_of = [](const auto& array) { return Span(array.data(), array.size()); };
-    vertices_ = gl::TextureBuffer::from(memory, "volume: vertices", GL_RGBA32I, span_of(prepared_->vertices));
-    corners_ = gl::Buffer::from(memory, "volume: corners", span_of(prepared_->corners));
+    vertices_ = gl::TextureBuffer::from(memory, "volume: vertices", GL_RGB32I, outside_->vertices.span());
+    corners_ = gl::Buffer::from(memory, "volume: corners", outside_->corners.span());
+    no_vertices_ = gl::VertexArray::create();
     mesh_ = gl::VertexArray::create();
     mesh_.set_elements(corners_);
-    no_vertices_ = gl::VertexArray::create();
+    uploaded_ = outside_->vertices.data();
 }
 
 UpdateReport ShadowVolumes::update(const View& view) {
@@ -81,19 +56,26 @@ UpdateReport ShadowVolumes::update(const View& view) {
             "technique 'volume' masks whole pixels and cannot draw antialias='coverage'; use 'ssaa', 'msaa', "
             "'fxaa' or 'none', or draw the layers with technique 'static'");
     UpdateReport report;
-    report.pieces = prepared_->corners.size() / 3;
+    report.pieces = outside_->corners.size() / 3;
     report.bytes = vertices_.buffer().bytes() + corners_.bytes();
-    report.counts = {{"volumes", static_cast<double>(prepared_->volumes.size())},
-                     {"volume_groups", static_cast<double>(prepared_->groups.size())},
-                     {"volume_batches", static_cast<double>(prepared_->batches.size())}};
+    report.counts = {{"volumes", static_cast<double>(outside_->drawn.size())},
+                     {"volume_groups", static_cast<double>(outside_->groups.size())},
+                     {"volume_batches", static_cast<double>(outside_->batches.size())}};
     return report;
 }
 
-// The depth that volumes are counted against, and what all of them are drawn with.
-void ShadowVolumes::begin(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+// The depth that volumes are counted against, and what all of them are drawn with. On the other side of the lens nothing
+// is counted, as in the sky.
+void ShadowVolumes::begin(LensSide side, const View& view, const GBufferView& gbuffer,
+                          gl::ProgramLibrary& programs) {
     glClearBufferfi(GL_DEPTH_STENCIL, 0, 0.0F, 0);
-    gl::Program& depth = programs.get("volume_depth");
+    gl::Program& depth = programs.get("volume_depth", inside_ ? gl::Flags{"LENS"} : gl::Flags{});
     depth.use();
+    if (inside_) {
+        depth.set("lens_side", static_cast<int>(side));
+        depth.set("lens_texture", 2);
+        gbuffer.lens->bind(2);
+    }
     depth.set("surface_texture", 0);
     gbuffer.surface->bind(0);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -107,14 +89,15 @@ void ShadowVolumes::begin(const View& view, const GBufferView& gbuffer, gl::Prog
     glEnable(GL_STENCIL_TEST);
     glEnable(GL_SCISSOR_TEST);
 
-    seen_ = VolumeView(view, prepared_->lattice, gbuffer.surface->width(), gbuffer.surface->height());
+    seen_ = VolumeView(view, outside_->lattice, gbuffer.surface->width(), gbuffer.surface->height());
     gl::Program& program = programs.get("volume");
     program.use();
     program.set("volume_vertices", 1);
     vertices_.bind(1);
     program.set("base_place", seen_.base_place());
     program.set("base_past", seen_.base_past());
-    program.set("quantum", static_cast<float>(prepared_->lattice.quantum));
+    program.set("quantum", static_cast<float>(outside_->lattice.quantum));
+    program.set("height_steps", glm::vec2(outside_->height_steps.lowest, outside_->height_steps.step));
     program.set("terrain_error", static_cast<float>(view.terrain_error));
 }
 
@@ -132,6 +115,7 @@ template <typename VolumeAt>
 bool ShadowVolumes::count(uint32_t first, uint32_t end, VolumeAt volume_at, gl::Program& program) {
     counts_.clear();
     starts_.clear();
+    first_vertices_.clear();
     ScreenBox box;
     uint32_t next = 0;
     for (uint32_t i = first; i < end; ++i) {
@@ -140,9 +124,11 @@ bool ShadowVolumes::count(uint32_t first, uint32_t end, VolumeAt volume_at, gl::
         if (own.empty())
             continue;
         box.add(own);
-        if (counts_.empty() || volume.first_corner != next) {
+        const auto first_vertex = static_cast<GLint>(2 * volume.first_vertex);
+        if (counts_.empty() || volume.first_corner != next || first_vertices_.back() != first_vertex) {
             counts_.push_back(0);
-            starts_.push_back(reinterpret_cast<const void*>(volume.first_corner * sizeof(uint32_t)));
+            starts_.push_back(reinterpret_cast<const void*>(volume.first_corner * sizeof(uint16_t)));
+            first_vertices_.push_back(first_vertex);
         }
         counts_.back() += static_cast<GLsizei>(volume.corner_count);
         next = volume.first_corner + volume.corner_count;
@@ -160,8 +146,8 @@ bool ShadowVolumes::count(uint32_t first, uint32_t end, VolumeAt volume_at, gl::
     const glm::ivec4& picture = seen_.picture();
     glViewport(-picture.x, -picture.y, picture.z, picture.w);
     mesh_.bind();
-    glMultiDrawElements(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, starts_.data(),
-                        static_cast<GLsizei>(counts_.size()));
+    glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_SHORT, starts_.data(),
+                                  static_cast<GLsizei>(counts_.size()), first_vertices_.data());
     return true;
 }
 
@@ -173,23 +159,46 @@ void ShadowVolumes::fold() {
     draw_full_screen();
 }
 
+template <typename SideFn>
+void ShadowVolumes::draw_sides(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs,
+                               SideFn draw_side) {
+    for (const LensSide side : {LensSide::outside, LensSide::inside}) {
+        const auto& prepared = side == LensSide::outside ? outside_ : inside_;
+        if (!prepared)
+            continue;
+        begin(side, view, gbuffer, programs);
+        draw_side(*prepared);
+        end();
+    }
+}
+
 void ShadowVolumes::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const GLfloat nothing[] = {0.0F, 0.0F, 0.0F, 0.0F};
     if (!view.has_below)
         glClearBufferfv(GL_COLOR, 0, nothing);
-    begin(view, gbuffer, programs);
+    draw_sides(view, gbuffer, programs,
+               [&](const PreparedVolumes& prepared) { draw_groups(prepared, programs); });
+}
+
+void ShadowVolumes::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+    const GLuint nothing[] = {0, 0, 0, 0};
+    glClearBufferuiv(GL_COLOR, 0, nothing);
+    draw_sides(view, gbuffer, programs,
+               [&](const PreparedVolumes& prepared) { draw_decals(prepared, programs); });
+}
+
+void ShadowVolumes::draw_groups(const PreparedVolumes& prepared, gl::ProgramLibrary& programs) {
     gl::Program& counting = programs.get("volume");
     gl::Program& mask = programs.get("volume_mask");
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    const auto volume_at = [&](uint32_t i) -> const Volume& { return prepared_->volumes[i]; };
+    const auto volume_at = [&](uint32_t i) -> const Volume& { return prepared.volumes[prepared.drawn[i]]; };
     in_hand_ = {};
-    for (size_t i = 0; i < prepared_->batches.size(); ++i) {
-        const Batch& batch = prepared_->batches[i];
-        const bool goes_on =
-            i + 1 < prepared_->batches.size() && prepared_->batches[i + 1].group == batch.group;
-        const std::array<uint8_t, 4>& color = prepared_->groups[batch.group].color;
+    for (size_t i = 0; i < prepared.batches.size(); ++i) {
+        const Batch& batch = prepared.batches[i];
+        const bool goes_on = i + 1 < prepared.batches.size() && prepared.batches[i + 1].group == batch.group;
+        const volume::Color& color = prepared.groups[batch.group];
         const bool is_opaque = color[3] == 255;
-        count(batch.first_volume, batch.first_volume + batch.volume_count, volume_at, counting);
+        count(batch.first_drawn, batch.first_drawn + batch.volume_count, volume_at, counting);
         if (in_hand_.empty())
             continue;
         glScissor(in_hand_.left, in_hand_.bottom, in_hand_.right - in_hand_.left,
@@ -209,21 +218,17 @@ void ShadowVolumes::draw(const View& view, const GBufferView& gbuffer, gl::Progr
         glDisable(GL_BLEND);
         in_hand_ = {};
     }
-    end();
 }
 
-// Decal by decal: a mask of many tells nothing of which one it shows.
-void ShadowVolumes::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
-    const GLuint nothing[] = {0, 0, 0, 0};
-    glClearBufferuiv(GL_COLOR, 0, nothing);
-    begin(view, gbuffer, programs);
+// One by one: a mask of many tells nothing of which one it shows.
+void ShadowVolumes::draw_decals(const PreparedVolumes& prepared, gl::ProgramLibrary& programs) {
     gl::Program& counting = programs.get("volume");
     gl::Program& mask = programs.get("volume_mask", {"IDS"});
-    const auto volume_at = [&](uint32_t i) -> const Volume& {
-        return prepared_->volumes[prepared_->volumes_of[i]];
-    };
-    for (uint32_t decal = 0; decal < prepared_->decals.size(); ++decal) {
-        for (uint32_t i = prepared_->first_volume_of[decal]; i < prepared_->first_volume_of[decal + 1]; ++i) {
+    const auto volume_at = [&](uint32_t i) -> const Volume& { return prepared.volumes[i]; };
+    for (const uint32_t decal : prepared.upwards) {
+        if (!prepared.shows(decal))
+            continue;
+        for (uint32_t i = prepared.first_volume_of[decal]; i < prepared.first_volume_of[decal + 1]; ++i) {
             in_hand_ = {};
             if (!count(i, i + 1, volume_at, counting))
                 continue;
@@ -232,7 +237,6 @@ void ShadowVolumes::draw_ids(const View& view, const GBufferView& gbuffer, gl::P
             lay_mask();
         }
     }
-    end();
 }
 
 // Draws where anything was counted, and forgets the counts.

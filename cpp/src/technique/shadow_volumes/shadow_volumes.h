@@ -30,8 +30,17 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
-    void begin(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    // What is seen outside the lens, or inside.
+    enum class LensSide : int { outside, inside };
+
+    // Calls back with what is seen on each side of the lens, after its depth was drawn.
+    template <typename SideFn>
+    void draw_sides(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs,
+                    SideFn draw_side);
+    void begin(LensSide side, const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     static void end();
+    void draw_groups(const volume::PreparedVolumes& prepared, gl::ProgramLibrary& programs);
+    void draw_decals(const volume::PreparedVolumes& prepared, gl::ProgramLibrary& programs);
     // Counts volumes [first, end) of a list that are in the view; false where none is.
     template <typename VolumeAt>
     bool count(uint32_t first, uint32_t end, VolumeAt volume_at, gl::Program& program);
@@ -39,7 +48,9 @@ private:
     void lay_mask();
     void draw_full_screen();
 
-    std::shared_ptr<const volume::PreparedVolumes> prepared_;
+    std::shared_ptr<const volume::PreparedVolumes> outside_;
+    std::shared_ptr<const volume::PreparedVolumes> inside_;  // shares the meshes; null without a lens
+    const volume::VolumeVertex* uploaded_ = nullptr;
     gl::TextureBuffer vertices_;
     gl::Buffer corners_;
     gl::VertexArray mesh_;
@@ -48,6 +59,7 @@ private:
     volume::ScreenBox in_hand_;    // where the volumes that are counted may show
     std::vector<GLsizei> counts_;  // of runs of volumes that are next to each other
     std::vector<const void*> starts_;
+    std::vector<GLint> first_vertices_;
 };
 
 }  // namespace decalgl

@@ -20,12 +20,6 @@ Vector2 operator*(double s, Vector2 a) {
 bool operator==(Vector2 a, Vector2 b) {
     return a.x == b.x && a.y == b.y;
 }
-double dot(Vector2 a, Vector2 b) {
-    return a.x * b.x + a.y * b.y;
-}
-double cross(Vector2 a, Vector2 b) {
-    return a.x * b.y - a.y * b.x;
-}
 Vector2 to_the_left(Vector2 d) {
     return {-d.y, d.x};
 }

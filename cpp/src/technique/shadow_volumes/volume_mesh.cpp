@@ -1,40 +1,11 @@
 #include "technique/shadow_volumes/volume_mesh.h"
 
-#include <array>
+#include <algorithm>
+
+#include "vector/clip_polygon.h"
 
 namespace decalgl::volume {
 namespace {
-
-// The part of a convex polygon on one side of a line of the lattice. Cuts are worked out in one direction, so that
-// neighbours are cut at the same point.
-std::vector<Vector2> cut(const std::vector<Vector2>& polygon, double Vector2::*axis, double line,
-                         bool below) {
-    const auto keeps = [&](Vector2 p) { return below ? p.*axis <= line : p.*axis >= line; };
-    std::vector<Vector2> kept;
-    for (size_t i = 0; i < polygon.size(); ++i) {
-        const Vector2 here = polygon[i], next = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-        if (keeps(here))
-            kept.push_back(here);
-        if (keeps(here) == keeps(next))
-            continue;
-        const bool upwards = here.*axis < next.*axis;
-        const Vector2 low = upwards ? here : next, high = upwards ? next : here;
-        const double share = (line - low.*axis) / (high.*axis - low.*axis);
-        Vector2 crossing{low.x + share * (high.x - low.x), low.y + share * (high.y - low.y)};
-        crossing.*axis = line;
-        kept.push_back(crossing);
-    }
-    return kept;
-}
-
-std::vector<Vector2> cut_to_lattice(Span<const Vector2> corners) {
-    std::vector<Vector2> polygon(corners.begin(), corners.end());
-    for (double Vector2::*axis : {&Vector2::x, &Vector2::y}) {
-        polygon = cut(polygon, axis, 0.0, false);
-        polygon = cut(polygon, axis, lattice_extent, true);
-    }
-    return polygon;
-}
 
 struct Edge {
     uint32_t low;
@@ -46,7 +17,8 @@ struct Edge {
 
 void VolumeMesher::add(Span<const Vector2> corners) {
     const bool inside = std::all_of(corners.begin(), corners.end(), on_lattice);
-    const std::vector<Vector2> cut = inside ? std::vector<Vector2>() : cut_to_lattice(corners);
+    const std::vector<Vector2> cut =
+        inside ? std::vector<Vector2>() : clip_to_square(corners, 0.0, lattice_extent);
     const Span<const Vector2> polygon = inside ? corners : Span<const Vector2>(cut);
     for (size_t i = 2; i < polygon.size(); ++i)
         add({rounded(polygon[0]), rounded(polygon[i - 1]), rounded(polygon[i])});
@@ -54,7 +26,7 @@ void VolumeMesher::add(Span<const Vector2> corners) {
 
 void VolumeMesher::add(const Triangle& triangle) {
     const int64_t area = doubled_area(triangle.a, triangle.b, triangle.c);
-    const HeightRange heights = area == 0 ? HeightRange{} : heights_.under(triangle.box());
+    const HeightRange heights = area == 0 ? HeightRange{} : heights_.over(lattice_.bounds(triangle.box()));
     if (heights.empty())
         return;
     const auto add = [&](LatticePoint at) {
@@ -66,47 +38,62 @@ void VolumeMesher::add(const Triangle& triangle) {
     ranges_.push_back(heights);
 }
 
-// Each point once, with the heights of all triangles that it belongs to.
-void VolumeMesher::add_vertices() {
-    known_ = points_;
-    std::sort(known_.begin(), known_.end());
-    known_.erase(std::unique(known_.begin(), known_.end()), known_.end());
-    const auto first = static_cast<uint32_t>(result_.vertices.size());
-    for (const uint64_t point : known_)
-        result_.vertices.push_back(
-            {static_cast<int32_t>(point >> 32), static_cast<int32_t>(point & 0xFFFFFFFF),
-             std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()});
-    triangles_.resize(points_.size());
-    for (size_t i = 0; i < points_.size(); ++i) {
-        const auto place = std::lower_bound(known_.begin(), known_.end(), points_[i]) - known_.begin();
-        triangles_[i] = first + static_cast<uint32_t>(place);
-        VolumeVertex& vertex = result_.vertices[triangles_[i]];
-        vertex.low = std::min(vertex.low, ranges_[i / 3].low);
-        vertex.high = std::max(vertex.high, ranges_[i / 3].high);
-    }
+void VolumeMesher::finish(uint32_t decal) {
+    mesh(decal, 0, ranges_.size());
+    points_.clear();
+    ranges_.clear();
 }
 
-void VolumeMesher::finish(uint32_t decal) {
-    if (points_.empty())
+// Of triangles [begin, end).
+void VolumeMesher::mesh(uint32_t decal, size_t begin, size_t end) {
+    if (begin == end)
         return;
-    add_vertices();
-    Volume volume{decal, static_cast<uint32_t>(result_.corners.size()),
-                  0,     static_cast<uint32_t>(triangles_.size()),
-                  {},    {}};
+    if (know_points(begin, end) > most_vertices) {
+        const size_t middle = begin + (end - begin) / 2;
+        mesh(decal, begin, middle);
+        mesh(decal, middle, end);
+        return;
+    }
+    Volume volume{
+        decal, static_cast<uint32_t>(result_.vertices.size()), static_cast<uint32_t>(result_.corners.size()),
+        0,     static_cast<uint32_t>(3 * (end - begin)),       {},
+        {}};
+    add_vertices(begin, end);
     for (const uint32_t vertex : triangles_) {
-        const VolumeVertex& at = result_.vertices[vertex];
+        const VolumeVertex& at = result_.vertices[volume.first_vertex + vertex];
         volume.box.add(LatticePoint{at.x, at.y});
-        volume.heights.add({at.low, at.high});
-        result_.corners.push_back(2 * vertex + 1);
+        volume.heights.add(known_ranges_[vertex]);
+        add_corner(2 * vertex + 1);
     }
     for (size_t i = 0; i < triangles_.size(); i += 3)
         for (const size_t corner : {i, i + 2, i + 1})
-            result_.corners.push_back(2 * triangles_[corner]);
+            add_corner(2 * triangles_[corner]);
     add_walls();
     volume.corner_count = static_cast<uint32_t>(result_.corners.size()) - volume.first_corner;
     result_.volumes.push_back(volume);
-    points_.clear();
-    ranges_.clear();
+}
+
+size_t VolumeMesher::know_points(size_t begin, size_t end) {
+    known_.assign(points_.begin() + static_cast<std::ptrdiff_t>(3 * begin),
+                  points_.begin() + static_cast<std::ptrdiff_t>(3 * end));
+    std::sort(known_.begin(), known_.end());
+    known_.erase(std::unique(known_.begin(), known_.end()), known_.end());
+    return known_.size();
+}
+
+// Each known point, with the heights of all triangles that it belongs to.
+void VolumeMesher::add_vertices(size_t begin, size_t end) {
+    known_ranges_.assign(known_.size(), HeightRange{});
+    triangles_.clear();
+    for (size_t i = 3 * begin; i < 3 * end; ++i) {
+        const auto place = std::lower_bound(known_.begin(), known_.end(), points_[i]) - known_.begin();
+        triangles_.push_back(static_cast<uint32_t>(place));
+        known_ranges_[static_cast<size_t>(place)].add(ranges_[i / 3]);
+    }
+    for (size_t i = 0; i < known_.size(); ++i)
+        result_.vertices.push_back({static_cast<int32_t>(known_[i] >> 32),
+                                    static_cast<int32_t>(known_[i] & 0xFFFFFFFF),
+                                    heights_.packed(known_ranges_[i])});
 }
 
 // Edges of the same two vertices stand beside each other when sorted; those that run against each other cancel out.
@@ -127,7 +114,7 @@ void VolumeMesher::add_walls() {
         const uint32_t a = 2 * (sum > 0 ? edge.low : edge.high), b = 2 * (sum > 0 ? edge.high : edge.low);
         for (int32_t copy = 0; copy < std::abs(sum); ++copy)
             for (const uint32_t corner : {a, b, b + 1, a, b + 1, a + 1})
-                result_.corners.push_back(corner);
+                add_corner(corner);
     }
 }
 

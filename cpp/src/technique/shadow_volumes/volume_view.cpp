@@ -3,6 +3,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "technique/view_base.h"
+
 namespace decalgl::volume {
 namespace {
 
@@ -19,12 +21,8 @@ VolumeView::VolumeView(const View& view, const Lattice& lattice, int width, int 
       pixels_apart_(2.0 * view.terrain_error + 1.0),
       width_(width),
       height_(height) {
-    const PositionGrid& positions = view.positions;
-    const glm::dvec2 base(positions.origin_x + block_->base_block.x * positions.block_size +
-                              static_cast<double>(block_->base_offset.x),
-                          positions.origin_y + block_->base_block.y * positions.block_size +
-                              static_cast<double>(block_->base_offset.y));
-    const Vector2 place = lattice.place(base.x, base.y);
+    const std::array<double, 3> base = base_of(view);
+    const Vector2 place = lattice.place(base[0], base[1]);
     base_ = {place.x, place.y};
     base_place_ = {whole_part(place.x), whole_part(place.y)};
     base_past_ = glm::vec2((base_ - glm::dvec2(base_place_)) * quantum_);
@@ -43,9 +41,10 @@ ScreenBox VolumeView::box_of(const Volume& volume) const {
     int behind = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const bool is_lid = (corner & 4) != 0;
-        glm::dvec3 at = relative(corner & 1 ? volume.box.max_x : volume.box.min_x,
-                                 corner & 2 ? volume.box.max_y : volume.box.min_y,
-                                 static_cast<double>(is_lid ? volume.heights.high : volume.heights.low));
+        glm::dvec3 at =
+            relative(corner & 1 ? volume.box.max_x : volume.box.min_x,
+                     corner & 2 ? volume.box.max_y : volume.box.min_y,
+                     static_cast<double>(is_lid ? volume.heights.highest : volume.heights.lowest));
         const glm::dvec3 forward(block_->forward);
         const double along = glm::dot(forward, at);
         const double pixel =

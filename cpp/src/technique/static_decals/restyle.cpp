@@ -10,6 +10,7 @@
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
+#include "technique/decal_looks.h"
 #include "technique/slot_ranks.h"
 #include "technique/static_decals/draw_order.h"
 #include "technique/static_decals/prepared_decals.h"
@@ -130,24 +131,10 @@ void PreparedDecals::summarise_styles() {
 }
 
 LayerLook PreparedDecals::look_of(uint32_t layer, size_t features) const {
-    LayerLook result;
-    result.layer = layer;
-    if (layer >= rules.size())
-        return result;
-    for (size_t i = 0; i < slots.size(); ++i) {
-        const Decal& slot = slots[i];
-        DecalLook* decals = slot.feature.layer == layer ? result.of(slot.role) : nullptr;
-        if (decals == nullptr || slot.feature.feature >= features)
-            continue;
-        decals->colors.resize(4 * features, 0);
-        std::copy_n(styles[i].color.begin(), 4, &decals->colors[size_t{4} * slot.feature.feature]);
-        if (!slot.is_stroke())
-            continue;
-        decals->widths.resize(features, 0.0);
-        decals->widths[slot.feature.feature] =
-            static_cast<double>(styles[i].half_width) * grid.quantum / rules[layer].half_width_per_width;
-    }
-    return result;
+    const double metres = layer < rules.size() ? grid.quantum / rules[layer].half_width_per_width : 0.0;
+    return layer_look(
+        slots, layer, features, [&](size_t i) { return styles[i].color.data(); },
+        [&](size_t i) { return static_cast<double>(styles[i].half_width) * metres; });
 }
 
 std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> looks,

@@ -15,7 +15,7 @@ dynamic      D, update_share: what do lines of constant width on the screen cost
 distance_field   sets, drawn, field_memory: what do networks by distance fields cost?
 loops        loops_detail, loops_static, loops_seg_time, loops_constant_time ...: what do levels of detail save?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
-clipmap      memory, generate, rebuild, draw, width: what do the solutions for lines in textures cost?
+clipmap      memory, generate, width, tiles, picture: what do the solutions for lines in textures cost?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
 """
 

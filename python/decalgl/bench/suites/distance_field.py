@@ -16,10 +16,10 @@ import numpy as np
 import shapely
 
 import decalgl as dg
-from decalgl.road_styles import CLASSES, COLORS, road_classes
+from decalgl.road_styles import CLASSES, COLORS
 
 from ..measure import draw, interleaved
-from ..workload import town_file
+from ..workload import roads
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,7 +36,7 @@ BITS = (8, 32)
 
 
 def measure(work: Workload, records: Records) -> None:
-    networks = {town: _roads(town) for town in work.towns} or {"streets": _streets()}
+    networks = {town: roads(town) for town in work.towns or ("streets",)}
     for name, network in networks.items():
         camera = dg.Camera.top_down(_bounds(network))
         for size in PICTURES if work.towns else (work.picture,):
@@ -122,26 +122,6 @@ def _scene(
     options: dict[str, Any] = {"bits": bits, "keep_depth": keep_depth}
     scene.add_lines(lines, technique=dg.DistanceField(category=category, styles=styles, **options))
     return scene
-
-
-def _roads(town: str) -> Network:
-    """A town's roads in metres, and the rank of each."""
-    import pyogrio
-
-    roads = pyogrio.read_dataframe(town_file(town), layer="lines", columns=["highway"])
-    roads["class"] = road_classes(roads["highway"])
-    roads = roads[roads["class"].notna()]
-    roads = roads.to_crs(roads.estimate_utm_crs())
-    places = {name: place for place, name in enumerate(CLASSES)}
-    return roads.geometry.to_numpy(), roads["class"].map(places).to_numpy(dtype=np.int64)
-
-
-def _streets() -> Network:
-    generator = np.random.default_rng(9)
-    starts = generator.uniform(0.0, 1000.0, (60, 1, 2))
-    steps = generator.normal(0.0, 60.0, (60, 8, 2))
-    lines = np.asarray(shapely.linestrings(starts + np.cumsum(steps, axis=1)))
-    return lines, np.arange(60, dtype=np.int64) % len(CLASSES)
 
 
 def _bounds(network: Network) -> tuple[float, float, float, float]:

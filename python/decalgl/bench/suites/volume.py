@@ -1,4 +1,4 @@
-"""Shadow volumes beside the static index and the thesis's: its figure 5.5, with one colour and with hundreds.
+"""Shadow volumes beside static and dynamic lines: figure 5.5 of the thesis, with one colour and with hundreds.
 
 memory     bytes of prepared data and of GL objects
 prepare    milliseconds; cutting polygons into triangles is in them
@@ -19,27 +19,33 @@ if TYPE_CHECKING:
     from ..records import Records
     from ..workload import Workload
 
-# The index of static layers; None: volumes.
-WAYS: dict[str, str | None] = {"static": "grid", "bvh": "bvh", "volume": None}
+TECHNIQUES: dict[str, dg.Technique] = {
+    "static": dg.Static(),
+    "bvh": dg.Static(),
+    "dynamic": dg.Dynamic(),
+    "volume": dg.Volume(groups="colors"),
+}
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "one colour": ("isolines", {}),
     "hundreds of colours": ("isolines", {"cmap": "viridis"}),
-    "iso-bands": ("iso-bands", {}),
+    "by height": ("iso-bands", {}),
 }
 
 
 def measure(work: Workload, records: Records) -> None:
     size = next(iter(work.sizes))
     for case, (kind, looks) in CASES.items():
-        name = f"{kind} {size}" if case == kind else f"{kind} {size}, {case}"
+        name = f"{kind} {size}, {case}"
         work.say(name)
-        renderers = {way: _prepared(work, records, name, kind, looks, way) for way in WAYS}
+        # Dynamic lines fill nothing.
+        ways = [way for way in TECHNIQUES if kind == "isolines" or way != "dynamic"]
+        renderers = {way: _prepared(work, records, name, kind, looks, way) for way in ways}
         for view, camera in work.views.items():
             drawn = [drawing(renderer, camera, "none", way) for way, renderer in renderers.items()]
             times = interleaved(work.runs, *drawn)
-            for way in WAYS:
+            for way in ways:
                 records.at(name, view, way).update(draw_ms=times[f"{way}_ms"])
-        for way in WAYS:
+        for way in ways:
             each = [records.at(name, view, way)["draw_ms"] for view in work.views]
             records.at(name, None, way).update(draw_ms=statistics.median(each))
 
@@ -52,15 +58,18 @@ def _prepared(
     if "cmap" in looks:
         looks = {**looks, "color": None, "column": arrays["coordinates"][arrays["offsets"][:-1], 0]}
     scene = dg.Scene(work.ground)
-    index = WAYS[way]
-    technique = dg.Static() if index else dg.Volume(groups="colors")
+    index = "bvh" if way == "bvh" else "grid"
+    technique = TECHNIQUES[way]
     add_contours(scene, kind, arrays, technique=technique, **looks)
-    renderer = dg.Renderer(size=work.picture, index=index or "grid", antialias="none")
+    renderer = dg.Renderer(size=work.picture, index=index, antialias="none")
     prepare = timed(lambda: renderer.preprocess(scene))
     renderer.update(next(iter(work.views.values())))
     stats = renderer.render().stats
     pass_name = "static_bvh" if index == "bvh" else technique.name
     records.at(name, None, way).update(
-        prepare_ms=prepare, bytes=stats.bytes[pass_name], groups=stats.counts.get("volume_groups", 0.0)
+        way=way,
+        prepare_ms=prepare,
+        bytes=stats.bytes[pass_name],
+        groups=stats.counts.get("volume_groups", 0.0),
     )
     return renderer
