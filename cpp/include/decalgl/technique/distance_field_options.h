@@ -101,6 +101,7 @@ struct DistanceFieldOptions : TechniqueOptions {
     std::vector<std::vector<uint8_t>> drop_offs;  // drop_off_side^2 texels each
 
     bool equals(const TechniqueOptions& other) const override { return this == &other; }
+    void write(ChoiceBytes& choices) const override;
 };
 
 constexpr uint32_t no_network_category = 0xFFFFFFFFU;  // of features that are not drawn

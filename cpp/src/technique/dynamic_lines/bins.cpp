@@ -19,11 +19,6 @@ constexpr uint32_t shortest_run = 512;
 constexpr uint32_t most_runs = 2048;
 constexpr uint32_t most_counts = 1U << 23;
 
-// Pixels beyond its width that a segment is looked for: the ground that a pixel sees is not the ground under the line.
-// Jitters and the terrain's level of detail come to it.
-constexpr float slack_pixels = 2.0F;
-constexpr float slack_share = 0.5F;
-
 uint32_t divided(uint32_t count, uint32_t by) {
     return (count + by - 1) / by;
 }
@@ -40,20 +35,22 @@ LineBins::LineBins(const MemoryAccount& memory)
       no_vertices_(gl::VertexArray::create()),
       half_planes_(gl::TextureBuffer::from(memory, "dynamic: half planes", GL_RG32UI, make_half_planes())) {}
 
-void LineBins::reserve(const View& view, uint32_t segments) {
+void LineBins::reserve(const View& view, uint32_t segments, bool with_arcs) {
     grid_ = {static_cast<int>(divided(static_cast<uint32_t>(view.width), TILE_SIDE)),
              static_cast<int>(divided(static_cast<uint32_t>(view.height), TILE_SIDE))};
     const auto tiles = static_cast<uint32_t>(grid_.x * grid_.y);
     run_count_ = std::clamp(segments / shortest_run, 1U, std::clamp(most_counts / tiles, 1U, most_runs));
     run_length_ = std::max(divided(segments, run_count_), 1U);
-    if (segments > segment_room_ || !ends_) {
+    if (segments > segment_room_ || !ends_ || with_arcs != static_cast<bool>(arcs_)) {
         segment_room_ = 0;
-        for (gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_})
+        for (gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_, &arcs_})
             *buffer = gl::TextureBuffer();
         ends_ = make_texels(memory_, GL_RGBA32F, 16, segments);
         joints_ = make_texels(memory_, GL_RGBA32UI, 16, segments);
         spans_ = make_texels(memory_, GL_RGBA32F, 16, segments);
         reaches_ = make_texels(memory_, GL_R32F, 4, segments);
+        if (with_arcs)
+            arcs_ = make_texels(memory_, GL_RG32UI, 8, segments);
         segment_room_ = segments;
     }
     const uint32_t counts = tiles * run_count_ + 1;
@@ -67,7 +64,8 @@ void LineBins::reserve(const View& view, uint32_t segments) {
 
 void LineBins::update(const View& view, const MatchedLines& lines, const SegmentList& segments,
                       const LineLooks& looks, gl::ProgramLibrary& programs) {
-    reserve(view, segments.most);
+    reserve(view, segments.most, looks.summary().is_styled);
+    ground_ = lines.ground;
     {
         const gl::PassTimer timer(view.timings, "dynamic: project");
         project(view, lines, segments, looks, programs);
@@ -87,14 +85,19 @@ void LineBins::project(const View& view, const MatchedLines& lines, const Segmen
     segments.segments.bind(2);
     looks.bind(program, 3);
     LatticeBase(lines.lattice, view).set(program);
-    program.set("slack", slack_pixels + static_cast<float>(view.terrain_error));
-    program.set("slack_share", slack_share);
+    set_ground_slack(program, view);
+    if (lines.arcs) {
+        program.set("line_arcs", 4);
+        lines.arcs.bind(4);
+    }
     segments.count.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
     dispatch(program, segments.most, [&](uint32_t first, uint32_t count) {
         bind_records(1, ends_.buffer(), 16, first, count);
         bind_records(2, joints_.buffer(), 16, first, count);
         bind_records(3, spans_.buffer(), 16, first, count);
         bind_records(4, reaches_.buffer(), 4, first, count);
+        if (arcs_)
+            bind_records(5, arcs_.buffer(), 8, first, count);
     });
 }
 
@@ -140,7 +143,7 @@ void LineBins::sort(const SegmentList& segments, gl::ProgramLibrary& programs) {
 
 uint64_t LineBins::bytes() const {
     uint64_t bytes = sums_.bytes() + half_planes_.buffer().bytes();
-    for (const gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_, &places_, &list_})
+    for (const gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_, &arcs_, &places_, &list_})
         bytes += buffer->buffer().bytes();
     return bytes;
 }
