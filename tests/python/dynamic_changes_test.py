@@ -80,17 +80,17 @@ def test_outlines_and_fills_are_edited_together() -> None:
 @pytest.mark.parametrize("looks", LOOKS, ids=["casing", "bands"])
 def test_another_draw_order_is_that_of_a_scene_prepared_with_it(looks: dict[str, Any]) -> None:
     looks = {**looks, "color": ["crimson", "royalblue", "gold"]}
-    renderer = renderer_of(scene_of(LINES, **looks), antialias="coverage")
+    renderer = renderer_of(scene_of(LINES, **looks))
     before = image_of(renderer)
     renderer.restyle("roads", order=[2, 1, 0])
     after = image_of(renderer)
-    assert (after == image_of(renderer_of(scene_of(LINES, order=[2, 1, 0], **looks), "coverage"))).all()
+    assert (after == image_of(renderer_of(scene_of(LINES, order=[2, 1, 0], **looks)))).all()
     assert not (after == before).all()
     # Looks are found again in the new order.
     renderer.restyle("roads", color="black", where=np.array([True, False, False]))
     renderer.restyle("roads", order="feature")
     black = {**looks, "color": ["black", "royalblue", "gold"]}
-    assert (image_of(renderer) == image_of(renderer_of(scene_of(LINES, **black), "coverage"))).all()
+    assert (image_of(renderer) == image_of(renderer_of(scene_of(LINES, **black)))).all()
 
 
 @pytest.mark.parametrize("method", ["bins", "lists"])

@@ -119,3 +119,17 @@ def test_lines_behind_a_ridge_are_seen_by_no_method(height: float, monkeypatch: 
     assert (found[0] != expected).sum() <= 2
     monkeypatch.setattr(ref.screen, "GROUND_SLACK", 1e9)
     assert (found[0] != ref.render_ids(scene, camera, SMALL, distances=False).ids).sum() > 20
+
+
+def test_wide_lines_in_thousands_of_tiles_are_whole() -> None:
+    # A run of segments has more tiles to tell than a software driver takes turns in one shader run.
+    lines = [LineString([(-20, y), (120, y + 40)]) for y in np.linspace(-40, 100, 120)]
+    pictures = []
+    for methods in ("bins", "lists"):
+        scene = flat_scene()
+        technique = dg.Dynamic(method=methods)  # type: ignore[arg-type]
+        scene.add_lines(lines[:1], width=1.0, color="red", technique=technique)
+        scene.add_lines(lines, width=90.0, color="blue", technique=technique)
+        camera = dg.Camera.top_down((0, 0, 100, 100))
+        pictures.append(scene.render(camera, (200, 200), "none", terrain_error=0.0).ids)
+    assert (pictures[0] == pictures[1]).all()

@@ -206,11 +206,10 @@ void add_segment(inout SampledSlot slot, SeenSegment seen) {
     if (!seen.is_on_ground) return;
     slot.covered |= segment_mask(seen, slot.look, slot.half_width);
 #ifdef SIDES
-    int i = 0;
-    do {
+    for (int i = 0; i < sample_count; ++i) {
         bvec2 aside = looked_aside(slot.nearest[i], seen, sample_offsets[i]);
         if (aside.x) slot.inside = (slot.inside & ~sample_if(true, i)) | sample_if(aside.y, i);
-    } while (++i < sample_count);
+    }
 #endif
 }
 

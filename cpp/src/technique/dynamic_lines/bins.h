@@ -46,6 +46,7 @@ private:
     const gl::Texture2D* ground_ = nullptr;  // of the lines of the latest update
     gl::TextureBuffer places_;               // of each tile and run
     gl::TextureBuffer list_;
+    gl::Buffer progress_, unfinished_;  // of the runs
     gl::TextureBuffer half_planes_;
     PrefixSum sums_;
 };
