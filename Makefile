@@ -1,4 +1,4 @@
-# make demo | gallery | techniques | test | bench | lint | tidy | format | sanitize | clean
+# make demo | gallery | techniques | test | bench | report | lint | tidy | format | sanitize | clean
 #
 # Each target sets up what it needs and is quick the second time: the stamps in build/stamps say what is done.
 #
@@ -15,17 +15,19 @@ BIN := $(VENV)/bin
 STAMPS := build/stamps
 BUILD := build/release
 JOBS ?= $(shell nproc)
+# Of the report: quick or full.
+SIZE ?= quick
 # CI treats warnings as errors.
 WERROR := $(if $(CI),ON,OFF)
 
-CPP_FILES = $(shell find cpp tests bench python/bindings -name '*.cpp' -o -name '*.h' 2>/dev/null)
+CPP_FILES = $(shell find cpp tests python/bindings -name '*.cpp' -o -name '*.h' 2>/dev/null)
 # What the installed module is made of; Python files are live in an editable install.
 NATIVE_SOURCES = $(shell find cpp cmake python/bindings -type f 2>/dev/null) CMakeLists.txt python/CMakeLists.txt
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 
-.PHONY: help setup build demo gallery techniques test bench lint tidy format sanitize wheel wheeltest clean distclean
+.PHONY: help setup build demo gallery techniques test bench report lint tidy format sanitize wheel wheeltest clean distclean
 
 help:  ## Show the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -49,8 +51,10 @@ test: build  ## Run the C++ and Python tests
 	$(BIN)/python -m pytest
 
 bench: build  ## Measure speed and memory on real data
-	cmake --build $(BUILD)
-	$(BIN)/python -m bench
+	$(BIN)/decalgl bench
+
+report: build  ## Draw a report of error against run time into build/report (SIZE=full takes hours)
+	$(BIN)/decalgl report --out build/report --size $(SIZE)
 
 lint: setup  ## Check formatting, style and types
 	$(BIN)/ruff check .

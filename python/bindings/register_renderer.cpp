@@ -252,6 +252,7 @@ void register_renderer(py::module_& module) {
                 return renderer.render(Background{low, high});
             },
             py::arg("sky_low"), py::arg("sky_high"))
+        .def("forget", &Renderer::forget)
         .def("time_floor", &Renderer::time_floor);
 
     module.def(

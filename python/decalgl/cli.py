@@ -1,12 +1,15 @@
-"""The command line: decalgl render | info | doctor.
+"""The command line: decalgl render | info | doctor | bench | report.
 
     decalgl render scene.toml -o map.png --view valley
     decalgl render --dem dem.tif --polygons cover.gpkg --column kind --lines roads.gpkg --width 6 -o map.png
     decalgl info dem.tif
     decalgl doctor
+    decalgl bench --compare before.json after.json
+    decalgl report --out build/report --size quick
 
 Results go to standard output, progress and messages to standard error. Exit codes: 0 done, 1 the doctor found
-nothing that can draw, 2 an error (one line; --debug shows where), 130 cancelled with Ctrl-C.
+nothing that can draw or a comparison something worse, 2 an error (one line; --debug shows where), 130
+cancelled with Ctrl-C.
 """
 
 from __future__ import annotations
@@ -34,6 +37,7 @@ app = typer.Typer(
 messages = Console(stderr=True, soft_wrap=True, highlight=False)
 
 Files = list[Path] | None
+Words = list[str] | None
 Text = str | None
 
 
@@ -147,6 +151,53 @@ def doctor() -> None:
     if not any(record.ok for record in records):
         messages.print("Nothing here can draw.", style="bold red")
         raise typer.Exit(1)
+
+
+@app.command()
+def bench(
+    size: Annotated[Words, typer.Option(help="1M, 5M or 31M; may be repeated. All by default.")] = None,
+    suite: Annotated[Words, typer.Option(help="What to ask; may be repeated. All by default.")] = None,
+    runs: Annotated[int, typer.Option(help="Rounds of which the medians are taken.")] = 5,
+    out: Annotated[Path | None, typer.Option(help="The file of results to write.")] = None,
+    docs: Annotated[bool, typer.Option("--docs", help="Only write the last results into the docs.")] = False,
+    compare: Annotated[
+        tuple[Path, Path] | None, typer.Option(help="Two files of results: what got worse from A to B?")
+    ] = None,
+) -> None:
+    """Measure speed and memory on real data, or compare the results of two runs."""
+    from .bench import command
+
+    if compare is not None:
+        raise typer.Exit(0 if command.compare(*compare) else 1)
+    if docs:
+        command.write_docs()
+    else:
+        command.measure_all(size or [], suite or [], runs, out)
+
+
+@app.command()
+def report(
+    out: Annotated[Path, typer.Option(help="The folder to write: index.html, report.json, CSVs, pictures.")],
+    size: Annotated[str, typer.Option(help="quick (some minutes, no network) or full (hours).")] = "quick",
+    part: Annotated[Words, typer.Option(help="What to measure; may be repeated. All by default.")] = None,
+    step: Annotated[
+        Text,
+        typer.Option(help="Of the scenes: offline, small, medium or large. By default as fits the size."),
+    ] = None,
+    redraw: Annotated[bool, typer.Option("--redraw", help="Only make the page of what is there.")] = False,
+    docs: Annotated[bool, typer.Option("--docs", help="Only take what is there over into the docs.")] = False,
+) -> None:
+    """Measure error against run time and more, and write a page with plots that opens offline."""
+    from .report import command
+
+    if not docs:
+        page = command.write(out) if redraw else command.make(out, size, part or [], step)
+        messages.print(f"Wrote {page}", markup=False)
+        return
+    from .report.docs import update
+
+    for path in update(out):
+        messages.print(f"Wrote {path}", markup=False)
 
 
 def parse_size(text: str) -> tuple[int, int]:

@@ -65,7 +65,8 @@ class Stats:
     bytes: held by each technique, the terrain and the frame, prepared data and GL objects together.
     objects: the same, object by object.
     counts: triangles, features, segments, pieces, prepared_bytes, and quantum_m, how far a vertex may have
-        moved.
+        moved, and quantum_px, the same in pixels in the middle of the picture, of positions as well; uploads and
+        uploaded_bytes, what buffers and textures took since the picture before.
     variants: the program variants compiled so far.
     """
 

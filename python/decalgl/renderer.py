@@ -298,16 +298,34 @@ class Renderer:
     def render(self, background: Any = "sky") -> Frame:
         """The picture from the camera of the last `update`.
 
+        What has not changed since the last picture is not drawn again: the same view of the same scene costs
+        nothing, and another look of a layer draws the layers alone.
+
         background: "sky", a colour, or None for transparent (alpha 0) where there is no terrain.
         """
         low, high = drawn_background(background)
         if self._updated_layers is self._prepared_layers:
             self._updated_states = self._changes.states
-        return Frame(self._core.render(low, high), self._updated_layers, self._updated_states)
+        frame = self._core.render(low, high)
+        _warn_of_rounding(frame.stats["counts"])
+        return Frame(frame, self._updated_layers, self._updated_states)
+
+    def forget(self) -> None:
+        """Makes the next `update` and `render` begin anew, for those who time them. What is uploaded stays."""
+        self._core.forget()
 
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""
         return self._core.time_floor()
+
+
+def _warn_of_rounding(counts: Mapping[str, float]) -> None:
+    if counts["quantum_px"] > 1.0:
+        warn(
+            f"In the middle of this picture, layers may be {counts['quantum_px']:.3g} pixels off: over a terrain of"
+            f" this size, vertices are kept to {counts['quantum_m']:.3g} m, and positions to micrometres at best. Cut"
+            " the terrain to what you look at, or stay farther away."
+        )
 
 
 DEFAULT_OPTIONS = {

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-import importlib
 import itertools
-from pathlib import Path
-from typing import Any
+import json
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 import shapely
 
 import decalgl as dg
+from decalgl import cli
+from decalgl.bench import command, comparison, goals, shapes, tables, terminal, workload
+from decalgl.bench.measure import interleaved
+from decalgl.bench.suites import SUITES
+from decalgl.errors import InputError
 
-ROOT = Path(__file__).resolve().parents[2]
+if TYPE_CHECKING:
+    from pathlib import Path
+
 # Of San Francisco bay, as the views are.
 WEST, NORTH, SPACING = -44_500.0, 55_600.0, 1112.0
 ROWS, COLUMNS = 101, 81
@@ -29,21 +35,10 @@ def hills() -> dg.Terrain:
 
 
 @pytest.fixture(scope="module")
-def bench() -> Any:
-    """The modules of the benchmark, which is not installed."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(ROOT))
-        for name in ("report", "tables", "goals"):
-            importlib.import_module(f"bench.{name}")
-        yield importlib.import_module("bench.__main__"), importlib.import_module("bench")
-
-
-@pytest.fixture(scope="module")
-def records(bench: Any, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
+def records(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     """All suites, once."""
-    program, modules = bench
-    sizes = {"few": modules.workload.Size(200.0, 400.0), "more": modules.workload.Size(80.0, 160.0)}
-    work = modules.workload.Workload(
+    sizes = {"few": workload.Size(200.0, 400.0), "more": workload.Size(80.0, 160.0)}
+    work = workload.Workload(
         ground=hills(),
         folder=tmp_path_factory.mktemp("contours"),
         sizes=sizes,
@@ -55,41 +50,89 @@ def records(bench: Any, tmp_path_factory: pytest.TempPathFactory) -> list[dict[s
         ring=(4000, 20),
         towns=(),
     )
-    found: list[dict[str, Any]] = program.run(work, modules.suites.SUITES).list()
-    return found
+    return command.run(work, SUITES).list()
 
 
-def test_every_ratio_is_measured(bench: Any, records: list[dict[str, Any]]) -> None:
-    _, modules = bench
+def test_every_ratio_is_measured(records: list[dict[str, Any]]) -> None:
     measured = {name for record in records for name in record}
-    assert not set(modules.goals.RATIOS) - measured
+    assert not set(goals.RATIOS) - measured
     for record in records:
-        values = [record[name] for name in modules.goals.RATIOS if name in record]
+        values = [record[name] for name in goals.RATIOS if name in record]
         assert all(np.isfinite(value) and value > 0.0 for value in values), record
 
 
-def test_the_report_shows_them(bench: Any, records: list[dict[str, Any]]) -> None:
-    _, modules = bench
-    table = modules.report.table(records, (48, 27))
+def test_the_report_shows_them(records: list[dict[str, Any]]) -> None:
+    table = terminal.table(records, (48, 27))
     assert table.row_count >= len(records)
 
 
-def test_the_documentation_can_be_made_of_them(bench: Any, records: list[dict[str, Any]]) -> None:
-    _, modules = bench
+def test_the_documentation_can_be_made_of_them(records: list[dict[str, Any]]) -> None:
     results = {"machine": {"cores": 2, "processor": "x", "driver": "y"}, "runs": 1, "records": records}
-    for block in modules.tables.BLOCKS.values():
+    for block in tables.BLOCKS.values():
         assert block(results).startswith("| ")
 
 
-def test_shapes_are_valid(bench: Any) -> None:
-    _, modules = bench
+def test_shapes_are_valid() -> None:
     bounds = (0.0, 0.0, 90_000.0, 110_000.0)
-    ring = modules.shapes.spiked_ring(bounds, 6000, 30)
+    ring = shapes.spiked_ring(bounds, 6000, 30)
     starts = ring.part_offsets
     assert len(starts) - 1 == 31
     outline, *holes = [ring.coords[first:last] for first, last in itertools.pairwise(starts)]
     polygon = shapely.Polygon(outline, holes)
     assert shapely.is_valid(polygon), shapely.is_valid_reason(polygon)
-    disjoint = modules.shapes.disjoint(bounds, 10)
+    disjoint = shapes.disjoint(bounds, 10)
     blobs = shapely.polygons(disjoint.coords.reshape(10, -1, 2))
     assert shapely.union_all(blobs).area == pytest.approx(shapely.area(blobs).sum())
+
+
+def test_medians_come_with_their_spread() -> None:
+    times = iter([9.0, 10.0, 12.0, 8.0, 11.0, 9.0])
+    found = interleaved(5, lambda: {"some_ms": next(times)})
+    assert found == {"some_ms": 10.0, "some_ms_spread": pytest.approx(0.1)}
+
+
+def results(floor: float, time: float, size: int, spread: float = 0.01) -> dict[str, Any]:
+    """A run of two records."""
+    measured = {"draw_ms": time, "draw_ms_spread": spread, "index_bytes": size}
+    records = [
+        {"scene": "hills", "technique": "static", "view": "close", "floor_ms": floor},
+        {"scene": "hills", "technique": "static", "view": "far", **measured},
+    ]
+    return {"machine": {"driver": "x"}, "records": records}
+
+
+@pytest.mark.parametrize(
+    ("after", "worse", "better"),
+    [
+        (results(5.0, 10.4, 1000), [], []),
+        (results(5.0, 11.0, 1000), ["draw_ms"], []),
+        (results(5.0, 11.0, 1000, spread=0.03), [], []),  # noisy
+        (results(10.0, 20.0, 1000), [], []),  # the machine took twice as long for everything
+        (results(5.0, 9.0, 1100), ["index_bytes"], ["draw_ms"]),
+    ],
+)
+def test_comparing_tells_changes_from_noise(
+    after: dict[str, Any], worse: list[str], better: list[str]
+) -> None:
+    found = comparison.compare(results(5.0, 10.0, 1000), after)
+    assert [one.name for one in found.worse] == worse
+    assert [one.name for one in found.better] == better
+    assert comparison.table(found).row_count == len(worse) + len(better)
+
+
+def test_runs_without_anything_in_common_are_refused() -> None:
+    with pytest.raises(InputError, match="in common"):
+        comparison.compare({"records": []}, results(5.0, 10.0, 1000))
+
+
+def test_the_command_compares_two_files(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    before, after, other = (tmp_path / f"{name}.json" for name in ("before", "after", "other"))
+    before.write_text(json.dumps(results(5.0, 10.0, 1000)))
+    after.write_text(json.dumps(results(5.0, 20.0, 1000)))
+    other.write_text("[]")
+    assert cli.run(["bench", "--compare", str(before), str(before)]) == 0
+    assert cli.run(["bench", "--compare", str(before), str(after)]) == 1
+    assert "draw_ms" in capfd.readouterr().out
+    for wrong in (other, tmp_path / "absent.json"):
+        assert cli.run(["bench", "--compare", str(before), str(wrong)]) == 2
+        assert capfd.readouterr().err.startswith("error: ")

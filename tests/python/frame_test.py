@@ -231,8 +231,10 @@ def test_stats() -> None:
     assert stats.counts["segments"] > 0
     assert 0.0 < stats.counts["quantum_m"] < 1e-3
     assert json.loads(json.dumps(stats.to_dict())) == stats.to_dict()
-    again = draw(scene).stats
-    assert [one["name"] for one in again.passes] == ["terrain", "static", "compose", "readback"], "no upload"
+    moved = draw(scene, OBLIQUE).stats
+    assert [one["name"] for one in moved.passes] == ["terrain", "static", "compose", "readback"], "no upload"
+    assert 0.0 < moved.counts["uploaded_bytes"] < stats.counts["uploaded_bytes"] / 10
+    assert 0.0 < moved.counts["quantum_px"] < 0.01
 
 
 def variants(scene: dg.Scene, **options: Any) -> set[str]:

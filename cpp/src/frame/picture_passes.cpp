@@ -86,13 +86,16 @@ void Pipeline::draw_centres(const Piece& piece) {
     if (at_centres_ == &piece)
         return;
     set_sample(piece, glm::vec2(0.0F));
-    const gl::PassTimer timer(&timings_, "terrain");
     targets_->seen.gbuffer.begin();
     draw_terrain(piece, {});
     at_centres_ = &piece;
 }
 
 void Pipeline::draw_terrain(const Piece& piece, gl::Flags flags) {
+    triangles_ = 0;
+    if (tiles_.empty())
+        return;
+    const gl::PassTimer timer(&timings_, "terrain");
     glViewport(-piece.drawn.x, -piece.drawn.y, request_.width, request_.height);
     glEnable(GL_DEPTH_TEST);
     triangles_ = terrain_->draw(tiles_, std::move(flags), programs_);
@@ -103,20 +106,17 @@ void Pipeline::draw_overlay(const SeenTargets& seen, Antialias antialias) {
     View view = view_;
     view.antialias = antialias;
     const GBufferView surface = look_through_lens(seen);
-    for (size_t i = 0; i < techniques_.size(); ++i) {
-        if (!scene_->passes[i].shows_anything())
-            continue;
-        const gl::PassTimer timer(&timings_, techniques_[i]->name());
+    for_each_shown([&](size_t, Technique& technique) {
+        const gl::PassTimer timer(&timings_, technique.name());
         seen.overlay_framebuffer.bind();
-        techniques_[i]->draw(view, surface, programs_);
+        technique.draw(view, surface, programs_);
         view.has_below = true;
-    }
+    });
 }
 
 void Pipeline::compose(const SeenTargets& seen, const gl::Framebuffer& target, gl::Flags flags) {
     const gl::PassTimer timer(&timings_, "compose");
-    const bool is_laid_over = targets_->needs.has_overlay;
-    if (is_laid_over)
+    if (shows_layers())
         flags.insert("OVERLAY");
     gl::Program& program = programs_.get("compose", flags);
     target.bind();
@@ -127,14 +127,14 @@ void Pipeline::compose(const SeenTargets& seen, const gl::Framebuffer& target, g
     seen.gbuffer.surface.bind(1);
     program.set("base_texture", 2);
     seen.gbuffer.base.bind(2);
-    if (is_laid_over) {
+    if (shows_layers()) {
         program.set("overlay_texture", 3);
         seen.overlay.bind(3);
         program.set("layer_shading", static_cast<float>(scene_->relief.on_layers));
     }
     const auto color = [](const std::array<float, 4>& c) { return glm::vec4(c[0], c[1], c[2], c[3]); };
-    program.set("sky_low", color(request_.background.low));
-    program.set("sky_high", color(request_.background.high));
+    program.set("sky_low", color(background_.low));
+    program.set("sky_high", color(background_.high));
     draw_full_screen();
 }
 
@@ -142,11 +142,8 @@ void Pipeline::draw_samples(const Piece& piece) {
     targets_->sum_framebuffer.clear_color(0, 0.0F, 0.0F, 0.0F, 0.0F);
     for (const glm::vec2 jitter : sample_pattern(options_.samples)) {
         set_sample(piece, jitter);
-        {
-            const gl::PassTimer timer(&timings_, "terrain");
-            targets_->seen.gbuffer.begin();
-            draw_terrain(piece, {});
-        }
+        targets_->seen.gbuffer.begin();
+        draw_terrain(piece, {});
         add_sample();
     }
     show_mean(options_.samples);
@@ -162,10 +159,7 @@ void Pipeline::draw_multisamples(const Piece& piece) {
         set_sample(piece, jitter);
         targets_->multisampled.begin();
         const std::vector<glm::vec2> places = driver_pattern(at_once);
-        {
-            const gl::PassTimer timer(&timings_, "terrain");
-            draw_terrain(piece, {"MULTISAMPLED"});
-        }
+        draw_terrain(piece, {"MULTISAMPLED"});
         for (int i = 0; i < at_once; ++i) {
             set_sample(piece, jitter + places[static_cast<size_t>(i)]);
             take_sample(i);

@@ -44,12 +44,6 @@ int border_of(Antialias antialias) {
     return antialias == Antialias::fxaa ? fxaa_reach : antialias == Antialias::coverage ? 1 : 0;
 }
 
-// Whether any layer is seen: else there is no overlay, and no texture for one.
-bool has_overlay(const PreparedScene& scene) {
-    return std::any_of(scene.passes.begin(), scene.passes.end(),
-                       [](const PreparedPass& pass) { return pass.shows_anything(); });
-}
-
 }  // namespace
 
 Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
@@ -65,9 +59,8 @@ Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
 }
 
 bool Pipeline::draws(const PreparedScene* scene, const PictureRequest& request) const {
-    return scene_.get() == scene && same_view(request_, request) && request_.antialias == request.antialias &&
-           request_.background.low == request.background.low &&
-           request_.background.high == request.background.high;
+    return is_updated_ && scene_.get() == scene && same_view(request_, request) &&
+           request_.antialias == request.antialias;
 }
 
 void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
@@ -82,16 +75,15 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
     try {
         if (!is_change) {
             // The old scene goes first: both at once may not fit.
-            techniques_.clear();
+            drawers_.clear();
             terrain_.reset();
+            targets_.reset();
             scene_.reset();
             terrain_ = std::make_unique<TerrainMesh>(*scene, memory_);
             for (const PreparedPass& pass : scene->passes)
-                techniques_.push_back(make_technique(pass.technique));
+                drawers_.push_back({make_technique(pass.technique), nullptr, nullptr, false, {}});
         }
-        for (size_t i = 0; i < techniques_.size(); ++i)
-            techniques_[i]->upload(scene->passes[i].prepared, scene->passes[i].in_lens,
-                                   {&terrain_->heights(), &scene->terrain}, memory_);
+        upload_layers(*scene);
         gl::check_errors("uploading the scene");
     } catch (...) {
         scene_.reset();
@@ -100,17 +92,42 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
     scene_ = std::move(scene);
 }
 
-UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
-    at_centres_ = nullptr;
-    return update_layers(std::move(scene), request);
+// What was uploaded of a layer stays while it is hidden, for when it is shown again.
+void Pipeline::upload_layers(const PreparedScene& scene) {
+    for (size_t i = 0; i < drawers_.size(); ++i) {
+        const PreparedPass& pass = scene.passes[i];
+        Drawer& drawer = drawers_[i];
+        const bool is_there = drawer.prepared == pass.prepared && drawer.in_lens == pass.in_lens;
+        if (is_there || !pass.shows_anything())
+            continue;
+        drawer.prepared = nullptr;
+        drawer.is_updated = false;
+        drawer.technique->upload(pass.prepared, pass.in_lens, {&terrain_->heights(), &scene.terrain},
+                                 memory_);
+        drawer.prepared = pass.prepared;
+        drawer.in_lens = pass.in_lens;
+    }
 }
 
-UpdateReport Pipeline::update_layers(std::shared_ptr<const PreparedScene> scene,
-                                     const PictureRequest& request) {
+void Pipeline::forget() {
+    is_updated_ = false;
+    at_centres_ = nullptr;  // so that the view is set anew
+}
+
+void Pipeline::forget_costs() {
     timings_.clear();
+    context_->uploads() = {};
+}
+
+UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request) {
+    forget_costs();
+    if (draws(scene.get(), request))
+        return report_;
+    is_updated_ = false;
+    image_.reset();
+    image_charge_ = MemoryCharge();
     const bool shows_surface = at_centres_ != nullptr && scene_ && scene_->shares_ground(*scene) &&
-                               same_view(request_, request) && request_.antialias == request.antialias &&
-                               targets_->needs.has_overlay == has_overlay(*scene);
+                               same_view(request_, request) && request_.antialias == request.antialias;
     if (!shows_surface)
         at_centres_ = nullptr;
     if (scene_ != scene) {
@@ -120,21 +137,29 @@ UpdateReport Pipeline::update_layers(std::shared_ptr<const PreparedScene> scene,
     request_ = request;
     if (!shows_surface)
         set_view();
+    choose_shown();
+    make_targets();
     UpdateReport report;
     report.shader_steps = context_->info().software ? software_shader_steps : 0;
-    counts_.clear();
-    for (const auto& technique : techniques_) {
-        const UpdateReport part = technique->update(view_);
-        counts_.insert(counts_.end(), part.counts.begin(), part.counts.end());
+    for_each_shown([&](size_t i, Technique& technique) {
+        if (!drawers_[i].is_updated)
+            drawers_[i].report = technique.update(view_);
+        drawers_[i].is_updated = true;
+        const UpdateReport& part = drawers_[i].report;
+        report.counts.insert(report.counts.end(), part.counts.begin(), part.counts.end());
         report.pieces += part.pieces;
         report.bytes += part.bytes;
         report.longest_walk = std::max(report.longest_walk, part.longest_walk);
-    }
+    });
+    report_ = report;
+    is_updated_ = true;
     return report;
 }
 
 void Pipeline::set_view() {
     const PictureRequest& request = request_;
+    for (Drawer& drawer : drawers_)
+        drawer.is_updated = false;
     tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
                           request.terrain_error);
     view_ = {request.width,
@@ -150,9 +175,22 @@ void Pipeline::set_view() {
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
                                   scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
     write_view_block();
-    terrain_->set_levels(tiles_);
+    if (request.antialias == Antialias::coverage && !tiles_.empty())  // for the rays of silhouettes
+        terrain_->set_levels(tiles_);
     choose_pieces();
-    make_targets();
+}
+
+bool Pipeline::is_in_view(const MapReach& reach) const {
+    return std::any_of(tiles_.begin(), tiles_.end(), [&](const VisibleTile& visible) {
+        return reach.meets(bounds_of(*visible.tile, scene_->terrain));
+    });
+}
+
+void Pipeline::choose_shown() {
+    shown_.clear();
+    for (size_t i = 0; i < drawers_.size(); ++i)
+        if (scene_->passes[i].shows_anything() && is_in_view(scene_->passes[i].reach))
+            shown_.push_back(i);
 }
 
 void Pipeline::choose_pieces() {
@@ -205,15 +243,17 @@ void Pipeline::make_targets() {
     }
     needs.antialias = request_.antialias;
     needs.multisamples = request_.antialias == Antialias::msaa ? multisamples() : 0;
-    needs.has_overlay = has_overlay(*scene_);
-    for (const auto& technique : techniques_) {
-        if (technique->needs_depth(view_))
+    needs.has_overlay = shows_layers();
+    for_each_shown([&](size_t, const Technique& technique) {
+        if (technique.needs_depth(view_))
             needs.overlay_depth = std::max(needs.overlay_depth, OverlayDepth::depth);
-        if (technique->needs_stencil(view_))
+        if (technique.needs_stencil(view_))
             needs.overlay_depth = OverlayDepth::depth_and_stencil;
-    }
-    if (targets_ && targets_->needs == needs)
+    });
+    // An overlay stays for when layers are seen again.
+    if (targets_ && targets_->needs.serve(needs))
         return;
+    at_centres_ = nullptr;
     targets_.reset();  // both at once may not fit
     silhouettes_.reset();
     targets_ = std::make_unique<Targets>(needs, memory_);
@@ -239,7 +279,7 @@ void Pipeline::read_shown(const gl::Framebuffer& framebuffer, GLenum attachment,
 }
 
 bool Pipeline::has_lens() const {
-    return scene_->lens && has_overlay(*scene_);
+    return scene_->lens && shows_layers();
 }
 
 // The G-buffer with the mask of the lens, drawn for the piece that it holds.
@@ -258,28 +298,59 @@ GBufferView Pipeline::look_through_lens(const SeenTargets& seen) {
     return view;
 }
 
-std::vector<uint8_t> Pipeline::draw_image() {
+std::shared_ptr<const std::vector<uint8_t>> Pipeline::image(const Background& background) {
+    if (image_ && background_ == background) {
+        forget_costs();
+        return image_;
+    }
+    background_ = background;
+    image_.reset();
+    image_charge_ = MemoryCharge();
     const size_t bytes = 4 * static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
-    const MemoryCharge charge(memory_, "frame: image", bytes);
-    std::vector<uint8_t> image(bytes);
+    image_charge_ = MemoryCharge(memory_, "frame: image", bytes);
+    auto image = std::make_shared<std::vector<uint8_t>>(bytes);
+    draw_image(*image);
+    image_ = image;
+    return image;
+}
+
+void Pipeline::draw_image(std::vector<uint8_t>& image) {
     silhouette_pixels_ = 0;
+    quantum_pixels_ = 0.0;
     for (const Piece& piece : pieces_) {
         draw_picture(piece);
         {
             const gl::PassTimer timer(&timings_, "readback");
             read_shown(targets_->picture_framebuffer, GL_COLOR_ATTACHMENT0, GL_RGBA8, piece, image);
+            measure_quantum(piece);
         }
-        if (silhouettes_)
+        if (silhouettes_ && !tiles_.empty())
             redraw_silhouettes(piece, image);
     }
     gl::check_errors("drawing the picture");
-    return image;
+}
+
+void Pipeline::measure_quantum(const Piece& piece) {
+    const int x = request_.width / 2 - piece.shown.x, y = request_.height / 2 - piece.shown.y;
+    if (!shows_layers() || x < 0 || y < 0 || x >= piece.shown.width || y >= piece.shown.height)
+        return;
+    const std::vector<float> middle = gl::read_pixels<float>(
+        targets_->seen.gbuffer.framebuffer, GL_COLOR_ATTACHMENT1, x + piece.shown.x - piece.drawn.x,
+        y + piece.shown.y - piece.drawn.y, 1, 1, gl::transfer_format(GL_RGBA32F), 4);
+    // Positions are offsets in blocks, in float32.
+    double quantum = std::ldexp(scene_->positions.block_size, -23);
+    for (const size_t i : shown_)
+        quantum = std::max(quantum, scene_->passes[i].prepared->counts().quantum);
+    const double depth = view_block_.forward.w + static_cast<double>(middle[2]);
+    const double pixel = pixel_at(request_.camera, request_.height, depth);
+    if (std::isfinite(depth) && pixel > 0.0)
+        quantum_pixels_ = quantum / pixel;
 }
 
 std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     const size_t pixels = static_cast<size_t>(request_.width) * static_cast<size_t>(request_.height);
-    std::vector<std::vector<uint32_t>> ids(techniques_.size(), std::vector<uint32_t>(pixels, 0));
-    if (!targets_->needs.has_overlay)
+    std::vector<std::vector<uint32_t>> ids(drawers_.size(), std::vector<uint32_t>(pixels, 0));
+    if (!shows_layers())
         return ids;
     const gl::Texture2D target =
         gl::Texture2D::create(memory_, "frame: ids", GL_R32UI, targets_->needs.width, targets_->needs.height);
@@ -290,13 +361,11 @@ std::vector<std::vector<uint32_t>> Pipeline::draw_ids() {
     for (const Piece& piece : pieces_) {
         draw_centres(piece);
         const GBufferView view = look_through_lens(targets_->seen);
-        for (size_t i = 0; i < techniques_.size(); ++i) {
-            if (!scene_->passes[i].shows_anything())
-                continue;
+        for_each_shown([&](size_t i, Technique& technique) {
             framebuffer.bind();
-            techniques_[i]->draw_ids(view_, view, programs_);
+            technique.draw_ids(view_, view, programs_);
             read_shown(framebuffer, GL_COLOR_ATTACHMENT0, GL_R32UI, piece, ids[i]);
-        }
+        });
     }
     gl::check_errors("drawing ids");
     return ids;

@@ -6,7 +6,6 @@
 // the whole, so the pieces fit without a seam. pipeline.cpp sets up and reads back, picture_passes.cpp draws.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -29,14 +28,16 @@ public:
 
     gl::Context& context() { return *context_; }
 
-    // Uploads what is not there yet and sets the view up. Throws Error(memory) where the picture is larger
-    // than the driver can draw or the budget holds.
+    // Uploads what is not there yet and sets the view up. What was drawn stays where scene and view still show
+    // it: nothing is done twice. Throws Error(memory) where the picture is larger than the driver can draw or the
+    // budget holds.
     UpdateReport update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
-    // The same, but what was drawn of the surface stays where scene and view still show it.
-    UpdateReport update_layers(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
+    // The next update and picture begin anew, for those who time them. What is uploaded stays.
+    void forget();
 
-    // Everything below draws what update() was last given; arrays have row 0 at the top.
-    std::vector<uint8_t> draw_image();
+    // Everything below draws what update() was last given; arrays have row 0 at the top. The image is that of the
+    // last call where nothing has changed since.
+    std::shared_ptr<const std::vector<uint8_t>> image(const Background& background);
     // Of each pass from bottom to top: 1 + id at each pixel's centre, 0 where there is none.
     std::vector<std::vector<uint32_t>> draw_ids();
     void draw_surface(std::vector<double>& world, std::vector<float>& depth, std::vector<float>& gradients);
@@ -44,13 +45,18 @@ public:
     double time_floor();
 
     bool draws(const PreparedScene* scene, const PictureRequest& request) const;
-    TimingLog& timings() { return timings_; }
+    // Since the last update, or since an image that was there already was asked for.
+    const TimingLog& timings() const { return timings_; }
+    const gl::Uploads& uploads() const { return context_->uploads(); }
     std::vector<std::string> variants() const { return programs_.variants(); }
+    // How far vertices may have moved, or positions may be off, in pixels in the middle of the last picture; 0 where no
+    // layer is in view or the sky is seen there.
+    double quantum_pixels() const { return quantum_pixels_; }
     uint64_t triangles() const { return triangles_; }
     // Of the last picture: pixels that were drawn anew since more than one surface is seen in them.
     uint64_t silhouette_pixels() const { return silhouette_pixels_; }
     // Of the techniques' last update.
-    const std::vector<std::pair<std::string, double>>& counts() const { return counts_; }
+    const std::vector<std::pair<std::string, double>>& counts() const { return report_.counts; }
 
 private:
     // A rectangle of the picture. What is drawn reaches beyond what is shown where passes look at neighbours.
@@ -58,11 +64,30 @@ private:
         Rectangle shown;
         Rectangle drawn;
     };
-    using PieceFn = std::function<void(const Piece&)>;
+    // What draws a pass of the scene, and what it was given to draw: nothing before the pass shows anything.
+    struct Drawer {
+        std::unique_ptr<Technique> technique;
+        std::shared_ptr<const Prepared> prepared;
+        std::shared_ptr<const Prepared> in_lens;
+        bool is_updated = false;  // to what it was given, and to the view
+        UpdateReport report;
+    };
 
     void upload(std::shared_ptr<const PreparedScene> scene);
     void upload_layers(const PreparedScene& scene);
+    void forget_costs();
     void set_view();
+    bool is_in_view(const MapReach& reach) const;
+    void choose_shown();
+    bool shows_layers() const { return !shown_.empty(); }
+    // Calls action(place, technique) for the passes in which anything is to be seen, from bottom to top.
+    template <typename Action>
+    void for_each_shown(Action action) {
+        for (const size_t i : shown_)
+            action(i, *drawers_[i].technique);
+    }
+    void draw_image(std::vector<uint8_t>& image);
+    void measure_quantum(const Piece& piece);
     void write_view_block();
     bool has_lens() const;
     GBufferView look_through_lens(const SeenTargets& seen);
@@ -97,9 +122,15 @@ private:
 
     std::shared_ptr<const PreparedScene> scene_;
     std::unique_ptr<TerrainMesh> terrain_;
-    std::vector<std::unique_ptr<Technique>> techniques_;
+    std::vector<Drawer> drawers_;  // one a pass
+    std::vector<size_t> shown_;    // the passes that show anything in this view, from bottom to top
 
     PictureRequest request_;
+    bool is_updated_ = false;  // to scene_ and request_
+    UpdateReport report_;
+    Background background_;
+    std::shared_ptr<const std::vector<uint8_t>> image_;  // null: to be drawn
+    MemoryCharge image_charge_;
     View view_;
     ViewBlock view_block_{};
     gl::Buffer view_buffer_;
@@ -108,7 +139,7 @@ private:
     std::vector<Piece> pieces_;
     uint64_t triangles_ = 0;
     uint64_t silhouette_pixels_ = 0;
-    std::vector<std::pair<std::string, double>> counts_;
+    double quantum_pixels_ = 0.0;
 
     LensMask lens_mask_;
     LensMask gathered_lens_mask_;

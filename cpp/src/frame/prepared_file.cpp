@@ -29,8 +29,9 @@ static_assert(sizeof(SceneRecord) == 104, "saved as it is");
 struct PassRecord {
     uint32_t first_layer;
     uint32_t layer_count;
+    MapReach reach;
 };
-static_assert(sizeof(PassRecord) == 8, "saved as it is");
+static_assert(sizeof(PassRecord) == 56, "saved as it is");
 
 struct LayerRecord {
     uint32_t kind;
@@ -181,6 +182,7 @@ void read_passes(const ArchiveReader& archive, const MemoryAccount& memory, Prep
         const auto record = archive.value<PassRecord>(pass_prefix(i) + "layers");
         pass.first_layer = record.first_layer;
         pass.layer_count = record.layer_count;
+        pass.reach = record.reach;
         pass.prepared = make_technique(pass.technique)->open(archive, pass_prefix(i), memory);
         require_features(archive, scene, *pass.prepared);
         scene.passes.push_back(std::move(pass));
@@ -244,7 +246,8 @@ void save_scene(const PreparedScene& scene, const std::string& path, unsigned th
     for (size_t i = 0; i < scene.passes.size(); ++i) {
         const PreparedPass& pass = scene.passes[i];
         archive.add_text(pass_prefix(i) + "technique", pass.technique);
-        archive.add_value(pass_prefix(i) + "layers", PassRecord{pass.first_layer, pass.layer_count});
+        archive.add_value(pass_prefix(i) + "layers",
+                          PassRecord{pass.first_layer, pass.layer_count, pass.reach});
         pass.prepared->save(archive, pass_prefix(i));
     }
     archive.write(path, threads, progress);

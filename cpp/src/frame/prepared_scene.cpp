@@ -58,8 +58,12 @@ void prepare_terrain(const Scene& scene, unsigned threads, Progress progress, Pr
 void prepare_pass(const std::string& technique, const TechniqueInput& input, Progress progress,
                   PreparedScene& prepared) {
     const Stopwatch watch;
-    PreparedPass pass{technique, input.first_layer, static_cast<uint32_t>(input.layers.size()),
-                      make_technique(technique)->preprocess(input, progress), nullptr};
+    PreparedPass pass{technique,
+                      input.first_layer,
+                      static_cast<uint32_t>(input.layers.size()),
+                      make_technique(technique)->preprocess(input, progress),
+                      nullptr,
+                      reach_of(input.layers)};
     prepared.timings.add(technique, watch.milliseconds());
     // Layers without anything to draw cost no pass.
     if (pass.prepared->counts().features > 0)

@@ -13,6 +13,7 @@
 #include "decalgl/technique/technique.h"
 #include "decalgl/terrain/tiles.h"
 #include "frame/fingerprint.h"
+#include "frame/map_reach.h"
 
 namespace decalgl {
 
@@ -23,6 +24,7 @@ struct PreparedPass {
     uint32_t layer_count = 0;
     std::shared_ptr<const Prepared> prepared;
     std::shared_ptr<const Prepared> in_lens;  // what is seen inside the lens; null where it is the same
+    MapReach reach;
 
     bool has_layer(uint32_t layer) const { return layer - first_layer < layer_count; }
 

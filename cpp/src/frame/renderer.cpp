@@ -96,7 +96,7 @@ struct RendererState {
     Pipeline& pipeline_for(const std::shared_ptr<const PreparedScene>& wanted,
                            const PictureRequest& wanted_request) {
         if (!pipeline->draws(wanted.get(), wanted_request))
-            pipeline->update_layers(wanted, wanted_request);
+            pipeline->update(wanted, wanted_request);
         return *pipeline;
     }
 };
@@ -106,7 +106,7 @@ struct FrameState {
     std::shared_ptr<const PreparedScene> scene;
     PictureRequest request;
     FrameStats stats;
-    std::vector<uint8_t> image;
+    std::shared_ptr<const std::vector<uint8_t>> image;
     std::vector<int64_t> ids;
     std::vector<int32_t> layers;
     std::vector<float> depth;
@@ -215,8 +215,8 @@ UpdateReport Renderer::update(const Camera& camera) {
     }
     const gl::CurrentScope current(state.pipeline->context());
     const RendererOptions& options = state.options;
-    const PictureRequest request{
-        camera, options.width, options.height, options.antialias, options.terrain_error, {}};
+    const PictureRequest request{camera, options.width, options.height, options.antialias,
+                                 options.terrain_error};
     const UpdateReport report = state.pipeline->update(scene, request);
     state.request = request;
     state.set_updated_scene(scene);
@@ -231,17 +231,21 @@ Frame Renderer::render(const Background& background) {
         throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
     const gl::CurrentScope current(state.pipeline->context());
     auto frame = std::make_shared<FrameState>();
-    state.request.background = background;
     frame->renderer = state_;
     frame->scene = std::move(scene);
     frame->request = state.request;
     const Stopwatch watch;
     Pipeline& pipeline = state.pipeline_for(frame->scene, frame->request);
-    frame->image = pipeline.draw_image();
+    frame->image = pipeline.image(background);
     frame->stats = collect_stats(pipeline, *frame->scene, state.memory);
     frame->stats.update_ms = state.update_ms;
     frame->stats.render_ms = watch.milliseconds() - frame->stats.readback_ms;
     return Frame(std::move(frame));
+}
+
+void Renderer::forget() {
+    if (state_->pipeline)
+        state_->pipeline->forget();
 }
 
 double Renderer::time_floor() {
@@ -285,7 +289,7 @@ int Frame::height() const {
     return state_->request.height;
 }
 const std::vector<uint8_t>& Frame::image() const {
-    return state_->image;
+    return *state_->image;
 }
 const FrameStats& Frame::stats() const {
     return state_->stats;

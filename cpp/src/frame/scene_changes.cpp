@@ -112,9 +112,12 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
                     "them");
     changed->fingerprint = SceneFingerprint(Digest{});
     // Of a layer that two passes share, each takes what is its own.
-    for (PreparedPass& pass : changed->passes)
-        if (has_layer(pass))
-            pass.prepared = pass.prepared->edited(edit, memory);
+    for (PreparedPass& pass : changed->passes) {
+        if (!has_layer(pass))
+            continue;
+        pass.prepared = pass.prepared->edited(edit, memory);
+        extend(pass.reach, edit);
+    }
     std::vector<int64_t> rows(layer.rows.begin(), layer.rows.end());
     const Span<const int64_t> added = edit.geometry.rows.subspan(edit.replaced.size(), edit.added_count());
     rows.insert(rows.end(), added.begin(), added.end());

@@ -23,11 +23,14 @@ FrameStats collect_stats(Pipeline& pipeline, const PreparedScene& scene, const M
     }
     stats.counts = {{"triangles", static_cast<double>(pipeline.triangles())},
                     {"silhouette_pixels", static_cast<double>(pipeline.silhouette_pixels())},
+                    {"uploads", static_cast<double>(pipeline.uploads().count)},
+                    {"uploaded_bytes", static_cast<double>(pipeline.uploads().bytes)},
                     {"features", static_cast<double>(sum.features)},
                     {"segments", static_cast<double>(sum.segments)},
                     {"pieces", static_cast<double>(sum.pieces)},
                     {"prepared_bytes", static_cast<double>(sum.bytes)},
-                    {"quantum_m", sum.quantum}};
+                    {"quantum_m", sum.quantum},
+                    {"quantum_px", pipeline.quantum_pixels()}};
     stats.counts.insert(stats.counts.end(), pipeline.counts().begin(), pipeline.counts().end());
     return stats;
 }

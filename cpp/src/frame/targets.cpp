@@ -21,12 +21,12 @@ SeenTargets::SeenTargets(int width, int height, bool has_overlay, OverlayDepth d
     overlay_framebuffer = gl::Framebuffer::create("overlay", attachments);
 }
 
-bool TargetNeeds::operator==(const TargetNeeds& other) const {
+bool TargetNeeds::serve(const TargetNeeds& others) const {
     const auto members = [](const TargetNeeds& needs) {
-        return std::tie(needs.width, needs.height, needs.antialias, needs.multisamples, needs.has_overlay,
-                        needs.overlay_depth);
+        return std::tie(needs.width, needs.height, needs.antialias, needs.multisamples);
     };
-    return members(*this) == members(other);
+    return members(*this) == members(others) && has_overlay >= others.has_overlay &&
+           overlay_depth >= others.overlay_depth;
 }
 
 Targets::Targets(const TargetNeeds& needed, const MemoryAccount& memory)

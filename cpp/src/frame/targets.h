@@ -34,7 +34,8 @@ struct TargetNeeds {
     bool has_overlay = false;
     OverlayDepth overlay_depth = OverlayDepth::none;
 
-    bool operator==(const TargetNeeds& other) const;
+    // Whether targets made for these needs serve others as well: with an overlay that is not asked for, perhaps.
+    bool serve(const TargetNeeds& others) const;
 };
 
 struct Targets {

@@ -137,14 +137,9 @@ struct Frustum {
 };
 
 Box tile_box(const TerrainTile& tile, const Heightfield& terrain, const glm::dvec3& eye) {
-    const int32_t last_column = std::min(tile.column + tile_quads, terrain.columns() - 1);
-    const int32_t last_row = std::min(tile.row + tile_quads, terrain.rows() - 1);
-    return {glm::dvec3(terrain.x0() + tile.column * terrain.dx(), terrain.y0() - last_row * terrain.dy(),
-                       static_cast<double>(tile.lowest)) -
-                eye,
-            glm::dvec3(terrain.x0() + last_column * terrain.dx(), terrain.y0() - tile.row * terrain.dy(),
-                       static_cast<double>(tile.highest)) -
-                eye};
+    const Bounds bounds = bounds_of(tile, terrain);
+    return {glm::dvec3(bounds.min_x, bounds.min_y, static_cast<double>(tile.lowest)) - eye,
+            glm::dvec3(bounds.max_x, bounds.max_y, static_cast<double>(tile.highest)) - eye};
 }
 
 // The fewest metres that the picture's height shows of an offset in any direction, anywhere in the box. Away
@@ -287,6 +282,13 @@ std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfie
     return visible;
 }
 
+Bounds bounds_of(const TerrainTile& tile, const Heightfield& terrain) {
+    const int32_t last_column = std::min(tile.column + tile_quads, terrain.columns() - 1);
+    const int32_t last_row = std::min(tile.row + tile_quads, terrain.rows() - 1);
+    return {terrain.x0() + tile.column * terrain.dx(), terrain.y0() - last_row * terrain.dy(),
+            terrain.x0() + last_column * terrain.dx(), terrain.y0() - tile.row * terrain.dy()};
+}
+
 double nearest_depth(const std::vector<VisibleTile>& tiles, const Heightfield& terrain,
                      const Camera& camera) {
     const CameraBasis basis = basis_of(camera);
@@ -296,15 +298,18 @@ double nearest_depth(const std::vector<VisibleTile>& tiles, const Heightfield& t
     return std::max(0.0, static_cast<double>(static_cast<float>(0.999 * nearest)));
 }
 
+double pixel_at(const Camera& camera, int height, double depth) {
+    return (camera.orthographic() ? camera.view_height : 2.0 * half_height_at_unit_distance(camera) * depth) /
+           height;
+}
+
 double widest_pixel(const std::vector<VisibleTile>& tiles, const Heightfield& terrain, const Camera& camera,
                     int height) {
-    if (camera.orthographic())
-        return camera.view_height / height;
     const CameraBasis basis = basis_of(camera);
     double farthest = 0.0;
     for (const VisibleTile& visible : tiles)
         farthest = std::max(farthest, tile_box(*visible.tile, terrain, camera.eye).reach(basis.forward));
-    return 2.0 * half_height_at_unit_distance(camera) * farthest / height;
+    return pixel_at(camera, height, farthest);
 }
 
 }  // namespace decalgl

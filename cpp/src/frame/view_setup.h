@@ -21,8 +21,14 @@ struct VisibleTile {
 std::vector<VisibleTile> select_tiles(const TerrainTiles& tiles, const Heightfield& terrain,
                                       const Camera& camera, int width, int height, double terrain_error);
 
+// The part of the map that a tile covers.
+Bounds bounds_of(const TerrainTile& tile, const Heightfield& terrain);
+
 // A depth, exact in float32, that nothing visible lies before; 0 where the eye is among the tiles.
 double nearest_depth(const std::vector<VisibleTile>& tiles, const Heightfield& terrain, const Camera& camera);
+
+// Metres across the view that a pixel shows at a depth.
+double pixel_at(const Camera& camera, int height, double depth);
 
 // Metres across the view that a pixel of the farthest visible terrain shows.
 double widest_pixel(const std::vector<VisibleTile>& tiles, const Heightfield& terrain, const Camera& camera,

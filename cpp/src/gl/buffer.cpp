@@ -26,6 +26,8 @@ Buffer Buffer::create(const MemoryAccount& account, const std::string& name, std
     buffer.handle_ = ObjectHandle(ObjectType::buffer, id);
     buffer.bytes_ = bytes;
     glNamedBufferStorage(id, static_cast<GLsizeiptr>(stored), bytes == 0 ? nullptr : data, flags);
+    if (data != nullptr)
+        Context::require_current().uploads().add(bytes);
     check_errors(fmt::format("creating the buffer {} of {}", name, format_bytes(bytes)).c_str());
     return buffer;
 }
@@ -38,6 +40,7 @@ void Buffer::update(std::size_t offset, std::size_t bytes, const void* data) {
     }
     if (bytes != 0) {
         glNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+        Context::require_current().uploads().add(bytes);
     }
 }
 

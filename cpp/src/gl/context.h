@@ -6,6 +6,7 @@
 // Contexts of the same backend may be current on several threads at once. The table of GL functions belongs
 // to the process, so contexts of different backends may not be current at the same time.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,17 @@ struct ContextInfo {
     std::vector<std::string> missing_features;  ///< of OpenGL 4.6, that this driver does not have
 };
 
+/// What was handed to the driver in buffers and textures.
+struct Uploads {
+    std::uint64_t count = 0;
+    std::uint64_t bytes = 0;
+
+    void add(std::uint64_t more) {
+        ++count;
+        bytes += more;
+    }
+};
+
 struct Platform;
 
 /// Remembers which context an object belongs to, and outlives it.
@@ -61,6 +73,8 @@ public:
     void release() noexcept;
 
     const ContextInfo& info() const { return info_; }
+    /// Counted by buffers and textures; whoever wants to know sets it to zero before.
+    Uploads& uploads() { return uploads_; }
 
     /// The context that make_current() last left on this thread, or null.
     static Context* current();
@@ -91,6 +105,7 @@ private:
     friend std::unique_ptr<Context> open_platform(const Platform& platform, bool debug);
 
     ContextInfo info_;
+    Uploads uploads_;
     std::shared_ptr<ContextState> state_;
 };
 

@@ -161,12 +161,14 @@ void Texture2D::update_layer(int layer, const void* texels) {
     const TransferFormat transfer = transfer_format(format_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTextureSubImage3D(id(), 0, 0, 0, layer, width_, height_, 1, transfer.format, transfer.type, texels);
+    Context::require_current().uploads().add(storage_bytes(texel_bytes(format_), width_, height_, 1, 0));
 }
 
 void Texture2D::update(int level, int x, int y, int width, int height, const void* texels) {
     const TransferFormat transfer = transfer_format(format_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTextureSubImage2D(id(), level, x, y, width, height, transfer.format, transfer.type, texels);
+    Context::require_current().uploads().add(storage_bytes(texel_bytes(format_), width, height, 1, 0));
 }
 
 void Texture2D::set_filter(GLenum minify, GLenum magnify) {

@@ -1,4 +1,4 @@
-// What a picture is asked to be. Equal requests of one prepared scene give equal bytes.
+// What a picture is asked to be. Equal requests of one prepared scene over one background give equal bytes.
 #pragma once
 
 #include <array>
@@ -19,6 +19,8 @@ struct Rectangle {
 struct Background {
     std::array<float, 4> low{0.87F, 0.91F, 0.94F, 1.0F};   // at the horizon
     std::array<float, 4> high{0.53F, 0.70F, 0.86F, 1.0F};  // 45 degrees above it
+
+    bool operator==(const Background& other) const { return low == other.low && high == other.high; }
 };
 
 struct PictureRequest {
@@ -27,7 +29,6 @@ struct PictureRequest {
     int height = 0;
     Antialias antialias = Antialias::coverage;
     double terrain_error = 0.5;  // pixels; 0: every sample
-    Background background;
 };
 
 }  // namespace decalgl

@@ -76,9 +76,12 @@ public:
     std::vector<PreparedLayer> layers() const;
     Bounds bounds() const;
 
-    // Throws Error(graphics) where no GL can be had, naming what was tried and what to install.
+    // What has not changed since the last picture is neither updated nor drawn again: the same view of the same
+    // scene costs nothing. Throws Error(graphics) where no GL can be had, naming what was tried and what to install.
     UpdateReport update(const Camera& camera);
     Frame render(const Background& background = {});
+    // The next update and picture begin anew, for those who time them. What is uploaded stays.
+    void forget();
 
     // Milliseconds of the pass that overlay passes are measured against, at the current picture.
     double time_floor();

@@ -102,6 +102,7 @@ struct DistanceFieldOptions : TechniqueOptions {
 
     bool equals(const TechniqueOptions& other) const override { return this == &other; }
     void write(ChoiceBytes& choices) const override;
+    bool names_widths() const override { return true; }  // or other ones, as soon as they are restyled
 };
 
 constexpr uint32_t no_network_category = 0xFFFFFFFFU;  // of features that are not drawn

@@ -24,6 +24,8 @@ public:
     virtual bool equals(const TechniqueOptions& other) const = 0;
     // All of them: a scene that was prepared with others is not taken from a file.
     virtual void write(ChoiceBytes& choices) const = 0;
+    // Whether they say how wide lines are, and the layer's widths are not read.
+    virtual bool names_widths() const { return false; }
 };
 
 // Who draws a layer, by a name of technique/registry.cpp.

@@ -37,10 +37,7 @@ gl::TextureBuffer make_texels(const MemoryAccount& memory, GLenum format, size_t
 
 }  // namespace
 
-LineBins::LineBins(const MemoryAccount& memory)
-    : memory_(memory),
-      no_vertices_(gl::VertexArray::create()),
-      half_planes_(gl::TextureBuffer::from(memory, "dynamic: half planes", GL_RG32UI, make_half_planes())) {}
+LineBins::LineBins(const MemoryAccount& memory) : memory_(memory), no_vertices_(gl::VertexArray::create()) {}
 
 void LineBins::reserve(const View& view, uint32_t segments, bool with_arcs) {
     grid_ = {static_cast<int>(divided(static_cast<uint32_t>(view.width), TILE_SIDE)),
@@ -82,6 +79,9 @@ void LineBins::update(const View& view, const MatchedLines& lines, const Segment
                       const LineLooks& looks, gl::ProgramLibrary& programs) {
     reserve(view, segments.most, looks.summary().is_styled);
     ground_ = lines.ground;
+    if (view.antialias == Antialias::coverage && !half_planes_)
+        half_planes_ =
+            gl::TextureBuffer::from(memory_, "dynamic: half planes", GL_RG32UI, make_half_planes());
     {
         const gl::PassTimer timer(view.timings, "dynamic: project");
         project(view, lines, segments, looks, programs);

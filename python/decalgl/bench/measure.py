@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import shutil
 import statistics
 import subprocess
 import time
@@ -12,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import decalgl as dg
 from decalgl import _core
+
+from . import folders
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,14 +29,25 @@ SMALL_PICTURE = (16, 16)
 
 
 def interleaved(runs: int, *measures: Measure) -> Times:
-    """The medians of all that the measures give, over `runs` rounds in which each runs once.
+    """The medians of all that the measures give, over `runs` rounds in which each runs once, and their spreads.
 
-    A first round is thrown away.
+    A first round is thrown away. `name`_spread, of times with names in _ms, is half of what lies between the quartiles,
+    as a share of the median; one round has none.
     """
     for measure in measures:
         measure()
     rounds = [{name: ms for measure in measures for name, ms in measure().items()} for _ in range(runs)]
-    return {name: statistics.median(times[name] for times in rounds) for name in rounds[0]}
+    medians = {name: statistics.median(times[name] for times in rounds) for name in rounds[0]}
+    if runs == 1:
+        return medians
+    timed = [name for name, value in medians.items() if name.endswith("_ms") and value > 0.0]
+    return {**medians, **{f"{name}_spread": spread([times[name] for times in rounds]) for name in timed}}
+
+
+def spread(values: list[float]) -> float:
+    """Half of what lies between the quartiles of two or more values, as a share of their median."""
+    first, middle, third = statistics.quantiles(values, n=4, method="inclusive")
+    return (third - first) / (2.0 * middle)
 
 
 def drawing(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str) -> Measure:
@@ -71,8 +85,9 @@ def floor(renderer: dg.Renderer) -> Measure:
 
 
 def draw(renderer: dg.Renderer, camera: dg.Camera, antialias: str) -> dg.Frame:
-    """A frame of a renderer's scene, in the size that it has."""
+    """A frame of a renderer's scene, in the size that it has, drawn anew."""
     renderer.set_picture(renderer.size, antialias)
+    renderer.forget()
     renderer.update(camera)
     return renderer.render()
 
@@ -128,15 +143,30 @@ def vertices_of(scene: dg.Scene) -> int:
 def machine() -> dict[str, Any]:
     """What the figures were measured on."""
     working = [record for record in dg.doctor() if record.ok]
-    commit = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
+    commit = _commit()
     return {
         "processor": _processor(),
         "cores": len(os.sched_getaffinity(0)),
         "system": platform.platform(),
         "driver": working[0].detail if working else "none",
-        "commit": commit.stdout.strip() or None,
+        "commit": commit,
         "decalgl": dg.__version__,
     }
+
+
+def _commit() -> str | None:
+    """That of the checkout; a dirty one ends in +. None for an installed package."""
+    root = folders.checkout()
+    git = shutil.which("git")
+    if root is None or git is None:
+        return None
+
+    def said(*arguments: str) -> str:
+        command = [git, "-C", str(root), *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
+
+    commit = said("rev-parse", "HEAD")
+    return commit + "+" * bool(said("status", "--porcelain", "--untracked-files=no")) if commit else None
 
 
 def _processor() -> str:

@@ -45,7 +45,8 @@ def _kept(path: Path, trace: Callable[[], Arrays], say: Say) -> Arrays:
         say(f"making {path.name}")
         path.parent.mkdir(parents=True, exist_ok=True)
         unfinished = path.with_suffix(".part.npz")
-        np.savez(unfinished, **trace())
+        arrays: dict[str, Any] = trace()
+        np.savez(unfinished, **arrays)
         unfinished.rename(path)
     with np.load(path) as stored:
         return dict(stored)

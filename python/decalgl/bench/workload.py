@@ -1,29 +1,26 @@
 """What is measured: a terrain, its contours in several sizes, the size of the picture, and how often.
 
-The real ground is San Francisco bay (SRTM, one arc-second), fetched from PyPI by examples/fetch_data.py. A
+The real ground is San Francisco bay (SRTM, one arc-second), fetched from PyPI (fetch.py). A
 test runs the same suites on a few hills.
 """
 
 from __future__ import annotations
 
 import functools
-import subprocess
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import decalgl as dg
 
-from . import cameras, contours
+from . import cameras, contours, fetch, folders
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from .contours import Arrays, Say
 
-ROOT = Path(__file__).resolve().parent.parent
-DATA = ROOT / "build" / "data"
 KINDS = ("isolines", "iso-bands")
 LINE_WIDTH = 6.0
 LINE_COLOR = "#7a5a36"
@@ -126,21 +123,13 @@ def line_table(arrays: Arrays) -> dg.FeatureTable:
 
 def real_ground() -> dg.Terrain:
     """3597 x 3577 samples, warped to metres; fetched where it is missing."""
-    path = next(DATA.glob("sf/**/*.tif"), None)
-    if path is None:
-        fetch = [sys.executable, str(ROOT / "examples" / "fetch_data.py"), "sf", "--out", str(DATA / "sf")]
-        subprocess.run(fetch, check=True)
-        path = next(DATA.glob("sf/**/*.tif"))
+    (path,) = fetch.fetch("sf", folders.data())
     return _without_rim(dg.Terrain.open(path))
 
 
 def town_file(town: str) -> Path:
     """A town's extract of OpenStreetMap, fetched where it is missing."""
-    path = DATA / town / f"{town}.osm.pbf"
-    if not path.is_file():
-        subprocess.run(
-            [sys.executable, str(ROOT / "examples" / "fetch_data.py"), town, "--out", str(DATA)], check=True
-        )
+    (path,) = fetch.fetch(town, folders.data())
     return path
 
 

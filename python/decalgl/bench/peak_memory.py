@@ -1,4 +1,4 @@
-"""How much memory preparing takes at its peak: python -m bench.peak_memory KIND FILE XMIN YMIN XMAX YMAX
+"""How much memory preparing takes at its peak: python -m decalgl.bench.peak_memory KIND FILE XMIN YMIN XMAX YMAX
 
 Run by the suite `memory`. The process's peak is set back before the layers are prepared, on level ground, so
 that what is seen is theirs alone: their index, and all that is held while it is made.

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-from ..workload import KINDS, ROOT
+from ..workload import KINDS
 
 if TYPE_CHECKING:
     from ..records import Records
@@ -22,12 +22,12 @@ def measure(work: Workload, records: Records) -> None:
             command = [
                 sys.executable,
                 "-m",
-                "bench.peak_memory",
+                "decalgl.bench.peak_memory",
                 kind,
                 str(path),
                 *map(str, work.ground.bounds),
             ]
-            out = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True).stdout
+            out = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
             found = json.loads(out)
             ratio = found["peak_bytes"] / found["input_bytes"]
             records.at(f"{kind} {size}", None).update(**found, peak_memory=ratio)

@@ -109,9 +109,7 @@ def scene_of(ground: dg.Terrain, table: dg.FeatureTable, method: str) -> dg.Scen
 
 
 def passes_of(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str) -> Measure:
-    """Measures a frame: `name`_ms of all passes of dynamic lines, `name`_update_ms of those that are the update's, and each
-    of these.
-    """
+    """Measures a frame: `name`_ms of all passes of dynamic lines, `name`_update_ms of the update, and each step of it."""
 
     def measured() -> dict[str, float]:
         passes = draw(renderer, camera, antialias).stats.passes

@@ -112,7 +112,7 @@ def _scene(
     widths = [CLASSES[look][0] + place for place, look in enumerate(looks)]
     scene = dg.Scene(dg.Terrain.flat(_bounds(network)))
     if as_static:
-        own = {"width": np.take(widths, category), "color": np.take(colors, category)}
+        own: dict[str, Any] = {"width": np.take(widths, category), "color": np.take(colors, category)}
         scene.add_lines(lines, **own, width_units="m", technique="static")
         return scene
     styles = {
@@ -140,7 +140,7 @@ def _streets() -> Network:
     generator = np.random.default_rng(9)
     starts = generator.uniform(0.0, 1000.0, (60, 1, 2))
     steps = generator.normal(0.0, 60.0, (60, 8, 2))
-    lines = shapely.linestrings(starts + np.cumsum(steps, axis=1))
+    lines = np.asarray(shapely.linestrings(starts + np.cumsum(steps, axis=1)))
     return lines, np.arange(60, dtype=np.int64) % len(CLASSES)
 
 

@@ -1,4 +1,4 @@
-"""The figures in the documentation, written from bench/results/latest.json: `python -m bench --docs`.
+"""The figures in the documentation, written from bench/results/latest.json: `decalgl bench --docs`.
 
 What stands between the lines <!-- bench:NAME --> and <!-- /bench --> of a page is replaced by what
 `tables.BLOCKS` makes for NAME.
@@ -8,32 +8,30 @@ from __future__ import annotations
 
 import json
 import re
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .tables import BLOCKS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from pathlib import Path
 
     from .tables import Results
 
-ROOT = Path(__file__).resolve().parent.parent
-RESULTS = ROOT / "bench" / "results" / "latest.json"
 PAGES = (
-    ROOT / "README.md",
-    ROOT / "docs" / "interaction.md",
-    ROOT / "docs" / "techniques" / "static.md",
-    ROOT / "docs" / "techniques" / "distance_field.md",
-    ROOT / "docs" / "techniques" / "loops.md",
+    "README.md",
+    "docs/interaction.md",
+    "docs/techniques/static.md",
+    "docs/techniques/distance_field.md",
+    "docs/techniques/loops.md",
 )
 MARKED = re.compile(r"(<!-- bench:(\w+) -->\n).*?(<!-- /bench -->)", re.DOTALL)
 
 
-def write_pages(results: Results, pages: Iterable[Path] = PAGES) -> list[Path]:
-    """Replaces every marked block; returns the pages that changed."""
+def write_pages(root: Path) -> list[Path]:
+    """Replaces every marked block in the pages of a checkout; returns the pages that changed."""
+    results = read_results(root)
     changed = []
-    for page in pages:
+    for page in (root / name for name in PAGES):
         text = page.read_text()
         filled = fill(text, results)
         if filled != text:
@@ -42,9 +40,9 @@ def write_pages(results: Results, pages: Iterable[Path] = PAGES) -> list[Path]:
     return changed
 
 
-def read_results(path: Path = RESULTS) -> Results:
-    """What the last full run wrote."""
-    results: Results = json.loads(path.read_text())
+def read_results(root: Path) -> Results:
+    """What the last full run wrote into a checkout."""
+    results: Results = json.loads((root / "bench" / "results" / "latest.json").read_text())
     return results
 
 

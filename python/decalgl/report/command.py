@@ -1,0 +1,105 @@
+"""What `decalgl report` does: measures all parts, and writes the page, report.json and a CSV for each part."""
+
+from __future__ import annotations
+
+import csv
+import json
+import time
+from typing import TYPE_CHECKING, Any, cast
+
+from rich.console import Console
+
+from .. import errors
+from ..bench import comparison, folders, measure
+from .page import Section, page
+from .part import SIZES, STEPS, Context, Row, Size, Step
+from .parts import PARTS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+TITLE = "decalgl: error against run time"
+NOTE = (
+    "Every figure comes from the rows in report.json. Times are medians of rounds in which all that is compared takes"
+    " turns; errors are those against decalgl.reference, and the same on every run."
+)
+STEPS_KNOWN = ("tiny", "offline", "small", "medium", "large")
+PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (480, 270), "full": (1280, 720)}
+CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 9), "quick": (80, 45), "full": (320, 180)}
+RUNS: dict[Size, int] = {"tiny": 1, "quick": 3, "full": 5}
+
+
+def make(out: Path, size: str, names: Sequence[str] = (), step: str | None = None, say: Any = None) -> Path:
+    """Measures the parts of these names, all where none is given, and writes the page. Raises DecalError.
+
+    step: of the case studies, by default as fits the size.
+    """
+    if size not in SIZES:
+        raise errors.InputError(f"There is no --size {size!r}. Choose from {', '.join(SIZES)}.")
+    if step is not None and step not in STEPS_KNOWN:
+        raise errors.InputError(f"There is no --step {step!r}. Choose from {', '.join(STEPS_KNOWN)}.")
+    unknown = [name for name in names if name not in PARTS]
+    if unknown:
+        raise errors.InputError(f"There is no --part {unknown[0]!r}. Choose from {', '.join(PARTS)}.")
+    chosen: Size = size
+    context = Context(
+        size=chosen,
+        step=cast("Step", step) if step else STEPS[chosen],
+        out=out,
+        data=folders.data(),
+        picture=PICTURE[chosen],
+        crop=CROP[chosen],
+        runs=RUNS[chosen],
+        say=say or Console(stderr=True, highlight=False).print,
+    )
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise errors.FileError(f"{out} cannot be written: {error.strerror}. Choose another --out.") from error
+    records: list[Row] = []
+    for name in names or PARTS:
+        started = time.monotonic()
+        context.say(f"[bold]{name}[/]")
+        records += [{"part": name, **row} for row in PARTS[name].rows(context)]
+        context.say(f"{time.monotonic() - started:.0f} s")
+    results = {
+        "machine": measure.machine(),
+        "runs": context.runs,
+        "size": size,
+        "step": context.step,
+        "records": records,
+    }
+    (out / "report.json").write_text(json.dumps(results, indent=1) + "\n")
+    return write(out)
+
+
+def write(out: Path) -> Path:
+    """Makes the page and the CSVs anew from a folder's report.json; the page's path."""
+    results = comparison.read(out / "report.json")
+    sections = []
+    for name, part in PARTS.items():
+        rows = [row for row in results["records"] if row["part"] == name]
+        if rows:
+            _write_csv(out / f"{name}.csv", rows)
+            sections.append(Section(name, part.TITLE, part.ABOUT, part.figures(rows)))
+    target = out / "index.html"
+    target.write_text(page(TITLE, results["machine"], NOTE, sections), encoding="utf-8")
+    return target
+
+
+def _write_csv(path: Path, rows: Sequence[Row]) -> None:
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, columns)
+        writer.writeheader()
+        writer.writerows(_flat(rows))
+
+
+def _flat(rows: Iterable[Row]) -> Iterable[Row]:
+    """Rows whose lists are texts."""
+    for row in rows:
+        yield {
+            name: json.dumps(value) if isinstance(value, (list, dict)) else value
+            for name, value in row.items()
+        }

@@ -1,0 +1,291 @@
+"""Stability: how far each technique's pictures are from the reference while one number is driven to the extreme.
+
+A pixel is right where its colour lies between those that the reference sees near its centre: within a fiftieth of a
+pixel, which is rounding, or within a whole one, which is blur, simplification or a coarse grid of distances.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import decalgl as dg
+from decalgl import reference as ref
+
+from . import plots
+from .extremes import EXTREMES, SIZE
+from .part import Figure, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from .extremes import Case, Extreme
+    from .part import Context, Row
+
+    FloatArray = NDArray[np.float64]
+    BoolArray = NDArray[np.bool_]
+
+# Pixels, and steps of colours from 0 to 1 that rounding to bytes may take.
+ROUNDING, NEAR = 0.02, 1.0
+SLACK = 2.5 / 255.0
+# Shares of the picture's pixels: how many may be off by more than a verdict allows.
+MOST_ROUGH, MOST_FAR = 0.001, 0.02
+EXACT, TOLERABLE, GRACEFUL, WARNS, REFUSES, FAILS = (
+    "exact",
+    "within tolerance",
+    "degrades gracefully",
+    "warns",
+    "refuses with an error",
+    "fails",
+)
+# From the best to the worst; a technique that says what is wrong is better than one that does not.
+VERDICTS = (EXACT, TOLERABLE, GRACEFUL, WARNS, REFUSES, FAILS)
+LEAST_DRAWN = 1e-5  # where curves of shares meet the axis
+
+TITLE = "Stability"
+ABOUT = (
+    f"Small scenes of {SIZE[0]} x {SIZE[1]} pixels in which one number goes to the extreme, each drawn by every"
+    " technique at the centres of pixels and compared with the reference. Rough is the share of pixels whose colour the"
+    f" reference does not see within {ROUNDING:g} pixels of the centre, far the share where it does not within a whole"
+    f" pixel. Exact: at most {MOST_ROUGH:.1%} are rough. Within tolerance: at most {MOST_ROUGH:.1%} are far. Degrades"
+    f" gracefully: at most {MOST_FAR:.0%} are far. Warns: more are far, and a warning says so; refuses: an error does."
+    " Fails: more are far, and nothing says so. Verdicts follow from the rows alone."
+)
+
+
+@dataclass(frozen=True)
+class Way:
+    """A technique as it is driven.
+
+    follows_view: its widths are those on the screen. kinds: "both" or "lines". one_look: of networks, where features
+    that look the same are one, all are opaque and of one colour. looks: what it makes of corners and caps.
+    """
+
+    technique: dg.Technique
+    options: dict[str, Any] = field(default_factory=dict)
+    follows_view: bool = False
+    kinds: str = "both"
+    one_look: bool = False
+    looks: dict[str, Any] = field(default_factory=dict)
+
+    def scene(self, case: Case) -> dg.Scene:
+        """The case as this technique draws it."""
+        return case.scene(
+            self.technique,
+            follows_view=self.follows_view,
+            one_look=self.one_look,
+            kinds=self.kinds,
+            looks=self.looks,
+        )
+
+
+WAYS = {
+    "static": Way(dg.Static()),
+    "static bvh": Way(dg.Static(), {"index": "bvh"}),
+    "dynamic bins": Way(dg.Dynamic(method="bins"), follows_view=True, kinds="lines"),
+    "dynamic lists": Way(dg.Dynamic(method="lists"), follows_view=True, kinds="lines"),
+    "loops": Way(dg.Loops()),
+    "volume": Way(dg.Volume()),
+    # Its joints are miters, from right angles on bevels, and its ends have no caps.
+    "clipmap": Way(dg.Clipmap(), looks={"corner": "miter", "miter_limit": 90.0, "cap": "butt"}),
+    "distance_field": Way(dg.DistanceField(), kinds="lines", one_look=True),
+}
+# Why a technique is off where it is, by the worst that happens to it.
+REASONS = {
+    (
+        "feature size",
+        "*",
+    ): "vertices are kept on a lattice over the whole terrain; finer detail is rounded away",
+    ("coincident", "*"): "the gap is smaller than the lattice that vertices are kept on",
+    (
+        "coordinates",
+        "*",
+    ): "maps reach to 1e8 m, ten times around the Earth; what lies beyond is taken for a mistake",
+    ("miter", "loops"): "draws round corners alone",
+    ("miter", "distance_field"): "draws round corners alone",
+    (
+        "overlap",
+        "static bvh",
+    ): "trees of boxes repeat each feature in every cell, up to the driver's largest array",
+    ("overlap", "volume"): "each colour is blended into bytes, and rounding adds up",
+    ("overlap", "clipmap"): "each feature is blended into bytes, and rounding adds up",
+    ("*", "loops"): "simplified by up to half a pixel, as was asked for",
+    ("*", "clipmap"): "textures are filtered, and texels end where there are 2^20 along the terrain",
+    ("*", "volume"): "a mesh is rasterised: vertices snap to 1/256 of a pixel, and depths to float32",
+    ("*", "*"): "vertices are rounded to a lattice",
+}
+
+
+def rows(context: Context) -> list[Row]:
+    """A row for each extreme, value and technique: `rough` and `far`, or an `error`; and the `verdict`."""
+    found: list[Row] = []
+    for extreme in EXTREMES:
+        context.say(f"stability: {extreme.title}")
+        values = context.chosen(extreme.quick[:1], extreme.quick, extreme.values)
+        found += driven(extreme, values)
+    return found
+
+
+def driven(extreme: Extreme, values: Iterable[float]) -> Iterator[Row]:
+    """The rows of one extreme."""
+    for value in values:
+        case = extreme.make(value)
+        for name, way in WAYS.items():
+            if way.kinds == "both" or case.lines:
+                words = {"scene": f"{extreme.name} {value:g}", "extreme": extreme.name, "technique": name}
+                yield {**words, "value": value, **judged(way, case)}
+
+
+def judged(way: Way, case: Case) -> Row:
+    """How far the picture of a case is from the reference: `rough`, `far`, `warning` and `verdict`, or an `error`."""
+    try:
+        scene = way.scene(case)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always", dg.DecalWarning)
+            frame = scene.render(case.camera, SIZE, antialias="none", background=None, **way.options)
+    except dg.DecalError as error:
+        return {"verdict": REFUSES, "error": str(error)}
+    drawn = frame.image[..., :3].reshape(-1, 3) / 255.0
+    wrong = np.arange(len(drawn))
+    for reach in (0.0, ROUNDING):
+        wrong = wrong[~_explained(scene, case, drawn, wrong, reach)]
+    far = wrong[~_explained(scene, case, drawn, wrong, NEAR)]
+    shares = {"rough": len(wrong) / len(drawn), "far": len(far) / len(drawn)}
+    row: Row = {**shares, "verdict": verdict_of(**shares, warns=bool(said))}
+    return {**row, "warning": str(said[0].message)} if said else row
+
+
+def verdict_of(rough: float, far: float, warns: bool) -> str:
+    """What shares of pixels that are off by more than rounding, and by more than a pixel, are called."""
+    if rough <= MOST_ROUGH:
+        return EXACT
+    if far <= MOST_ROUGH:
+        return TOLERABLE
+    if far <= MOST_FAR:
+        return GRACEFUL
+    return WARNS if warns else FAILS
+
+
+def _explained(
+    scene: dg.Scene, case: Case, drawn: FloatArray, pixels: NDArray[np.int64], reach: float
+) -> BoolArray:
+    """Which of some pixels have a colour between those that the reference sees up to `reach` pixels from the centre."""
+    if len(pixels) == 0:
+        return np.zeros(0, dtype=np.bool_)
+    centres = ref.pixel_centres((0, 0, *SIZE))[pixels]
+    found = np.stack([reference_colors(scene, case, centres + offset) for offset in _offsets(reach)])
+    low, high = found.min(axis=0) - SLACK, found.max(axis=0) + SLACK
+    between: BoolArray = ((drawn[pixels] >= low) & (drawn[pixels] <= high)).all(axis=1)
+    return between
+
+
+def _offsets(reach: float) -> FloatArray:
+    if reach == 0.0:
+        return np.zeros((1, 2))
+    x, y = np.meshgrid(np.linspace(-reach, reach, 5), np.linspace(-reach, reach, 5))
+    return np.stack([x.ravel(), y.ravel()], axis=1)
+
+
+def reference_colors(scene: dg.Scene, case: Case, points: FloatArray) -> FloatArray:
+    """What the reference sees at picture positions (n, 2): colours (n, 3) over black ground."""
+    surface = ref.raycast(scene, case.camera, SIZE, points)
+    slopes = ref.slopes_of(scene, case.camera, SIZE, surface)
+    colors: FloatArray = ref.composite(scene, surface.world[..., :2].reshape(-1, 2), slopes)[:, :3]
+    return colors
+
+
+def figures(rows: Sequence[Row]) -> list[Figure]:
+    """The table of verdicts, then curves of each extreme."""
+    return [_verdict_table(rows), _reason_table(rows), *(_curves(rows, one) for one in _driven_in(rows))]
+
+
+def _driven_in(rows: Sequence[Row]) -> list[Extreme]:
+    names = {row["extreme"] for row in rows}
+    return [extreme for extreme in EXTREMES if extreme.name in names]
+
+
+def _of(rows: Sequence[Row], extreme: Extreme, technique: str) -> list[Row]:
+    return [row for row in rows if row["extreme"] == extreme.name and row["technique"] == technique]
+
+
+def _worst(rows: Sequence[Row]) -> Row:
+    return max(rows, key=lambda row: VERDICTS.index(row["verdict"]))
+
+
+def _verdict_table(rows: Sequence[Row]) -> Figure:
+    lines = []
+    for extreme in _driven_in(rows):
+        cells = [f"{extreme.title} {_range(extreme, rows)}"]
+        for technique in WAYS:
+            own = _of(rows, extreme, technique)
+            cells.append(_cell(own) if own else "–")
+        lines.append(cells)
+    return Figure(
+        "Verdicts",
+        "The worst over the values driven through, and the first value at which it was given where it is not all of"
+        " them.",
+        table=Table(["extreme", *WAYS], lines),
+    )
+
+
+def _cell(own: list[Row]) -> str:
+    verdict = _worst(own)["verdict"]
+    those = [row["value"] for row in own if row["verdict"] == verdict]
+    return verdict if len(those) == len(own) or verdict == EXACT else f"{verdict}: {those[0]:g}"
+
+
+def _range(extreme: Extreme, rows: Sequence[Row]) -> str:
+    values = [row["value"] for row in rows if row["extreme"] == extreme.name]
+    return f"({values[0]:g} … {values[-1]:g}{' ' if extreme.unit else ''}{extreme.unit})"
+
+
+def _reason_table(rows: Sequence[Row]) -> Figure:
+    lines = []
+    for extreme in _driven_in(rows):
+        for technique in WAYS:
+            own = _of(rows, extreme, technique)
+            if not own or _worst(own)["verdict"] == EXACT:
+                continue
+            worst = _worst(own)
+            said = worst.get("error") or worst.get("warning") or ""
+            lines.append([extreme.title, technique, _cell(own), _reason(extreme.name, technique), said])
+    return Figure(
+        "Where techniques begin to be off, and why",
+        "What they say themselves is the error or the warning that was raised.",
+        table=Table(["extreme", "technique", "verdict", "why", "what it says"], lines),
+    )
+
+
+def _reason(extreme: str, technique: str) -> str:
+    known = ((extreme, technique), (extreme, "*"), ("*", technique), ("*", "*"))
+    return next(REASONS[key] for key in known if key in REASONS)
+
+
+def _curves(rows: Sequence[Row], extreme: Extreme) -> Figure:
+    figure, axes = plots.new()
+    for place, technique in enumerate(WAYS):
+        own = [row for row in _of(rows, extreme, technique) if "far" in row]
+        if not own:
+            continue
+        color, marker = plots.look(technique, place)
+        values = [row["value"] for row in own]
+        for name, style in (("far", "-"), ("rough", ":")):
+            shares = [max(row[name], LEAST_DRAWN) for row in own]
+            label = technique if name == "far" else None
+            axes.plot(values, shares, style, color=color, marker=marker, ms=4, lw=1.4, label=label)
+    if min(row["value"] for row in rows if row["extreme"] == extreme.name) > 0.0:
+        axes.set_xscale("log")
+    else:
+        axes.set_xscale("symlog", linthresh=0.01)
+    axes.set_yscale("log")
+    axes.set_ylim(0.7 * LEAST_DRAWN, 1.4)
+    axes.set_xlabel(f"{extreme.title}, {extreme.unit}" if extreme.unit else extreme.title)
+    axes.set_ylabel("share of pixels")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    caption = "Lines: off by more than a pixel; dotted: by more than rounding. At the bottom: none."
+    return Figure(f"Error over {extreme.title}", caption, plots.svg(figure))

@@ -1,0 +1,149 @@
+"""The report's parts on scaling, stability and needless work: what they measure, judge and draw."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import decalgl as dg
+from decalgl.report import extremes, needless, scaling, stability
+from decalgl.report.part import Context
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SOME = [one for one in extremes.EXTREMES if one.name in ("angle", "coordinates")]
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> Context:
+    return Context("tiny", tmp_path, tmp_path, (32, 18), (16, 9), 1, lambda _: None)
+
+
+def extreme(name: str) -> extremes.Extreme:
+    return next(one for one in extremes.EXTREMES if one.name == name)
+
+
+def judged(name: str, value: float, technique: str) -> dict[str, Any]:
+    return stability.judged(stability.WAYS[technique], extreme(name).make(value))
+
+
+def stored(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """As they come out of a file."""
+    read: list[dict[str, Any]] = json.loads(json.dumps(rows))
+    return read
+
+
+def test_no_technique_runs_what_a_scene_does_not_need() -> None:
+    rows = [row for name in ("static", "dynamic", "distance_field") for row in needless.states(name)]
+    assert [(row["technique"], row["scene"], row["needless"]) for row in rows if row["needless"]] == []
+    assert {row["scene"] for row in rows} >= {"hidden", "nothing in view", "unchanged", "another colour"}
+    figures = needless.figures(stored(rows))
+    assert figures[0].table is None
+    assert len(figures) == 4
+
+
+def test_what_is_needless_is_found() -> None:
+    needs = needless.Needs(needless.GROUND, style="one colour", uploads=10)
+    assert needless.surplus(["terrain", "upload"], ["static_decals[LENS,LINES]"], 11, {}, needs) == [
+        "pass upload",
+        "static_decals[LENS,LINES]: LENS",
+        "11 bytes uploaded",
+    ]
+    hidden = needless.Needs(needless.FIRST, layers=False)
+    ran = needless.surplus(["upload", "static"], [], 0, {"frame: overlay": 1}, hidden)
+    assert ran == ["pass static", "an overlay"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "technique", "verdict"),
+    [
+        ("coordinates", 1e8, "static", "exact"),
+        ("coordinates", 1e9, "static", "refuses with an error"),
+        ("feature size", 1e9, "static", "warns"),
+        ("exaggeration", 1000.0, "static bvh", "exact"),
+        ("tilt", 0.2, "dynamic bins", "exact"),
+        ("slope", 89.9, "distance_field", "exact"),
+        ("nesting", 100.0, "loops", "within tolerance"),
+        ("coincident", 1e-6, "volume", "warns"),
+    ],
+)
+def test_verdicts_at_the_extremes(name: str, value: float, technique: str, verdict: str) -> None:
+    row = judged(name, value, technique)
+    assert row["verdict"] == verdict, row
+    if verdict == "warns":
+        assert "pixels off" in row["warning"]
+    if verdict.startswith("refuses"):
+        assert row["error"]
+
+
+def test_wrong_pictures_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A reference that sees the map half a pixel, or ten, aside is told from one that agrees."""
+    case, way = extreme("coordinates").make(1.0), stability.WAYS["static"]
+    seen = stability.reference_colors
+    for aside, verdict in ((0.0, "exact"), (0.5, "within tolerance"), (10.0, "fails")):
+        monkeypatch.setattr(
+            stability,
+            "reference_colors",
+            lambda scene, case, points, aside=aside: seen(scene, case, points + np.array([aside, 0.0])),
+        )
+        assert stability.judged(way, case)["verdict"] == verdict
+
+
+def test_figures_stand_on_rows_alone() -> None:
+    rows = [
+        {"extreme": one.name, "technique": name, "value": value, "verdict": verdict, **shares}
+        for one in SOME
+        for name in stability.WAYS
+        for value, verdict, shares in (
+            (one.quick[0], "exact", {"rough": 0.0, "far": 0.0}),
+            (one.quick[-1], "refuses with an error", {"error": "No."}),
+        )
+    ]
+    figures = stability.figures(stored(rows))
+    assert len(figures) == 2 + len(SOME)
+    table = figures[0].table
+    assert table is not None
+    assert {len(row) for row in table.rows} == {1 + len(stability.WAYS)}
+    assert all(cell.startswith("refuses with an error") for row in table.rows for cell in row[1:])
+
+
+def test_all_extremes_make_scenes() -> None:
+    for one in extremes.EXTREMES:
+        assert set(one.quick) <= set(one.values), one.name
+        for value in one.quick:
+            case = one.make(value)
+            assert case.lines or case.polygons
+            coords = np.concatenate([part for feature in case.lines + case.polygons for part in feature])
+            assert np.isfinite(coords).all()
+
+
+@pytest.mark.parametrize(("power", "noise"), [(0.0, 0.0), (1.0, 0.0), (0.5, 0.1)])
+def test_exponents(power: float, noise: float) -> None:
+    counts = np.array([1e4, 1e5, 1e6, 1e7])
+    wobble = np.array([1.0, 1.0 + noise, 1.0 - noise, 1.0])
+    found = scaling.exponent(
+        [(n, v, 0.01) for n, v in zip(counts, 3.0 * counts**power * wobble, strict=True)]
+    )
+    assert found is not None
+    assert abs(found.slope - power) < 0.05
+    assert found.error < 0.05
+    assert noise == 0.0 or found.error > 0.005
+    assert scaling.exponent([(10.0, 1.0, 0.1)]) is None
+
+
+def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
+    refusing = scaling.Way(dg.Static(), (1e4, 0, 0), {"memory_limit": 1000})
+    monkeypatch.setattr(scaling, "WAYS", {"static": scaling.WAYS["static"], "volume": refusing})
+    rows = stored(scaling.rows(context))
+    sweeps = {row["sweep"] for row in rows}
+    assert sweeps == set(scaling.SWEEPS)
+    drawn = [row for row in rows if row["technique"] == "static" and row["sweep"] != "threads"]
+    assert all(row["draw_ms"] > 0.0 and row["prepare_ms"] > 0.0 and row["held_bytes"] > 0 for row in drawn)
+    assert all("memory limit" in row["error"] for row in rows if row["technique"] == "volume")
+    figures = scaling.figures(rows)
+    assert figures[0].table is not None
+    assert any("Refused: volume" in figure.caption for figure in figures)
