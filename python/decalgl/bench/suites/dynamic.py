@@ -23,24 +23,24 @@ if TYPE_CHECKING:
 WIDTH = 2.0
 VIEWS = ("overview", "oblique", "close")
 SHARES = (0.03, 0.1, 1.0)  # of the smallest isolines
-PICTURE = (1280, 720)
-LARGER_PICTURES = ((1920, 1080), (3840, 2160))
+PICTURES = (2.0 / 3.0, 1.0, 2.0)  # of the run's picture: 1280 x 720 to 3840 x 2160
 STEPS = ("simplify", "compact vertices", "cull", "compact segments", "project", "bins")
 
 
 def measure(work: Workload, records: Records) -> None:
     smallest = next(iter(work.sizes))
+    small, *larger = ((round(scale * work.picture[0]), round(scale * work.picture[1])) for scale in PICTURES)
     arrays = work.contours("isolines", smallest)
     for share in SHARES:
         table = some_lines(arrays, share)
-        measure_scene(work, records, table, f"pixel lines {share:g} of {smallest}", PICTURE)
+        measure_scene(work, records, table, f"pixel lines {share:g} of {smallest}", small)
     table = some_lines(arrays, SHARES[1])
-    for width, height in LARGER_PICTURES:
+    for width, height in larger:
         name = f"pixel lines {SHARES[1]:g} of {smallest}, {width} x {height}"
         measure_scene(work, records, table, name, (width, height))
     if work.middle != smallest:
         table = line_table(work.contours("isolines", work.middle))
-        measure_scene(work, records, table, f"pixel lines of {work.middle}", PICTURE)
+        measure_scene(work, records, table, f"pixel lines of {work.middle}", small)
 
 
 def measure_scene(
@@ -109,7 +109,7 @@ def scene_of(ground: dg.Terrain, table: dg.FeatureTable, method: str) -> dg.Scen
 
 
 def passes_of(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str) -> Measure:
-    """Measures a frame: `name`_ms of all passes of dynamic lines, `name`_update_ms of the update, and each step of it."""
+    """Measures a frame: `name`_ms of all passes, `name`_update_ms of the update of the view, and each step of it."""
 
     def measured() -> dict[str, float]:
         passes = draw(renderer, camera, antialias).stats.passes
