@@ -5,6 +5,7 @@
 // STYLED   patterns along lines, and colours across; goes with JOINED
 // LIMITS   widths that depend on the depth
 // LENS     other looks inside the lens
+#include "shared/stroke.glsl"
 #include "technique/dynamic_lines/line_entry.glsl"
 #include "technique/dynamic_lines/line_looks.glsl"
 #ifdef STYLED
