@@ -26,10 +26,11 @@ void register_stroke(py::module_& module) {
              }),
              py::arg("begin"), py::arg("end"), py::arg("begin_width"), py::arg("end_width"));
     py::class_<LinePattern>(module, "LinePattern")
-        .def(py::init([](double period, double offset, std::vector<PatternMark> marks) {
-                 return LinePattern{period, offset, std::move(marks)};
+        .def(py::init([](double period, double offset, std::vector<PatternMark> marks, bool in_pixels) {
+                 const WidthUnits units = in_pixels ? WidthUnits::pixels : WidthUnits::metres;
+                 return LinePattern{period, offset, std::move(marks), units};
              }),
-             py::arg("period"), py::arg("offset"), py::arg("marks"));
+             py::arg("period"), py::arg("offset"), py::arg("marks"), py::arg("in_pixels") = false);
     py::class_<ColorBand>(module, "ColorBand")
         .def(py::init([](double reach, std::array<uint8_t, 4> color) {
                  return ColorBand{reach, color};
@@ -64,6 +65,7 @@ void register_stroke(py::module_& module) {
             });
     def_array(stroke, "colors", &Stroke::colors);
     def_array(stroke, "widths", &Stroke::widths);
+    def_array(stroke, "margins", &Stroke::margins);
     def_array(stroke, "style_of", &Stroke::style_of);
 }
 

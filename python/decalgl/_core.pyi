@@ -38,7 +38,9 @@ class PatternMark:
     def __init__(self, begin: float, end: float, begin_width: float, end_width: float) -> None: ...
 
 class LinePattern:
-    def __init__(self, period: float, offset: float, marks: Sequence[PatternMark]) -> None: ...
+    def __init__(
+        self, period: float, offset: float, marks: Sequence[PatternMark], in_pixels: bool = False
+    ) -> None: ...
 
 class ColorBand:
     def __init__(self, reach: float, color: Sequence[int]) -> None: ...
@@ -60,6 +62,7 @@ class Stroke:
     widest: float
     in_pixels: bool
     limits: tuple[float, float, float, float]
+    margins: NDArray[np.float64]
     def __init__(self) -> None: ...
 
 class Hatch:

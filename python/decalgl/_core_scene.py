@@ -82,6 +82,8 @@ def _core_stroke(given: Stroke | None) -> _core.Stroke:
     stroke.in_pixels = given.units == "px"
     limits = given.limits
     stroke.limits = (limits.least_px, limits.most_px, limits.least_metres, limits.most_metres)
+    if given.margins is not None:
+        stroke.margins = given.margins
     if given.style_of is not None:
         stroke.style_of = given.style_of
     return stroke
@@ -104,7 +106,7 @@ def _core_pattern(given: LinePattern) -> _core.LinePattern:
     marks = [
         _core.PatternMark(mark.begin, mark.end, mark.begin_width, mark.end_width) for mark in given.marks
     ]
-    return _core.LinePattern(given.period, given.offset, marks)
+    return _core.LinePattern(given.period, given.offset, marks, given.units == "px")
 
 
 def _core_relief(scene: Scene) -> _core.Relief:

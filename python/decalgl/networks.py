@@ -135,6 +135,10 @@ class NetworkCategory:
         category.slope_correction = _core.SlopeCorrection.__members__[self.slope_correction or "none"]
         if self.dash is not None:
             pattern = self.dash.for_width(max(style.width for _, style in tuples))
+            if pattern.units == "px":
+                raise StyleError(
+                    f"NetworkCategory {name!r}: dash must be in metres or widths, not in pixels."
+                )
             marks = [
                 _core.PatternMark(mark.begin, mark.end, mark.begin_width, mark.end_width)
                 for mark in pattern.marks

@@ -16,11 +16,12 @@ import numpy as np
 
 from ._values import finite_number, is_listed, is_number, is_word
 from .errors import StyleError, close_matches
-from .strokes import LinePattern, PatternMark
+from .strokes import LinePattern, PatternMark, WidthUnits
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+PatternUnits = Literal["m", "px", "width"]
 MOST_MARKS = 16
 # Lengths on and off in line widths: rcParams lines.dashed_pattern and its siblings as matplotlib ships them.
 NAMED_DASHES = {
@@ -30,7 +31,9 @@ NAMED_DASHES = {
     "dashdot": (6.4, 1.6, 1.0, 1.6),
 }
 SYMBOLS = {"-": "solid", "--": "dashed", ":": "dotted", "-.": "dashdot"}
-DASH_KINDS = "'dashed', 'dotted', 'dashdot', 'solid', metres on and off such as (10, 5), or a decalgl.Pattern"
+DASH_KINDS = (
+    "'dashed', 'dotted', 'dashdot', 'solid', lengths on and off such as (10, 5), or a decalgl.Pattern"
+)
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,8 @@ class Pattern:
     marks: up to 16 tuples (begin, end) or (begin, end, begin_width, end_width): from where to where in the
         period, and what share of the line's width, 0 to 1, is covered there; a mark is a trapezoid.
     offset: how far into the period a line begins.
-    units: of all lengths: "m", metres, or "width", multiples of each line's own width.
+    units: of all lengths: "m", metres on the map; "px", pixels on the screen, seen head-on, for widths on the screen
+        alone; "width", multiples of each line's own width; None, those of the line's width.
 
     Raises StyleError.
     """
@@ -49,20 +53,20 @@ class Pattern:
     period: float
     marks: Sequence[Sequence[float]]
     offset: float = 0.0
-    units: Literal["m", "width"] = "m"
+    units: PatternUnits | None = None
 
     def __post_init__(self) -> None:
         period = finite_number(self.period, "Pattern period")
         if period <= 0.0:
             raise StyleError(f"Pattern period must be a length above 0, but it is {period:g}.")
-        if not is_word(self.units, ("m", "width")):
-            raise StyleError(f"Pattern units must be 'm' or 'width', but they are {self.units!r}.")
+        if self.units is not None and not is_word(self.units, ("m", "px", "width")):
+            raise StyleError(f"Pattern units must be 'm', 'px' or 'width', but they are {self.units!r}.")
         object.__setattr__(self, "period", period)
         object.__setattr__(self, "offset", finite_number(self.offset, "Pattern offset"))
         object.__setattr__(self, "marks", _checked_marks(self.marks, period))
 
     @classmethod
-    def dashes(cls, *lengths: float, offset: float = 0.0, units: Literal["m", "width"] = "m") -> Pattern:
+    def dashes(cls, *lengths: float, offset: float = 0.0, units: PatternUnits | None = None) -> Pattern:
         """Lengths on, off, on, off, ...; an odd number of them is taken twice over, as SVG does."""
         if len(lengths) % 2:
             lengths += lengths
@@ -86,7 +90,7 @@ class Pattern:
         length: float,
         shaft: float = 0.0,
         offset: float = 0.0,
-        units: Literal["m", "width"] = "m",
+        units: PatternUnits | None = None,
     ) -> Pattern:
         """Arrowheads of the line's whole width that point along it, one in each stretch of `every`.
 
@@ -104,7 +108,7 @@ class Pattern:
 
     @classmethod
     def stipple(
-        cls, bits: str, step: float, offset: float = 0.0, units: Literal["m", "width"] = "m"
+        cls, bits: str, step: float, offset: float = 0.0, units: PatternUnits | None = None
     ) -> Pattern:
         """On and off in equal steps: bits such as "11110010", each as long as `step`."""
         step = finite_number(step, "Pattern.stipple step")
@@ -116,8 +120,9 @@ class Pattern:
         marks = [(begin * step, end * step) for begin, end in zip(edges[::2], edges[1::2], strict=True)]
         return cls(len(bits) * step, marks, offset, units)
 
-    def for_width(self, width: float) -> LinePattern:
-        """The pattern of a line of this width, in metres."""
+    def for_width(self, width: float, width_units: WidthUnits = "m") -> LinePattern:
+        """The pattern of a line of this width."""
+        units: WidthUnits = self.units if self.units in ("m", "px") else width_units
         scale = width if self.units == "width" else 1.0
         marks = tuple(
             # The product may lie a rounding beyond the period's.
@@ -125,7 +130,7 @@ class Pattern:
             for begin, end, begin_width, end_width in self.marks
         )
         period = self.period * scale
-        return LinePattern(period, marks, (self.offset * scale) % period)
+        return LinePattern(period, marks, (self.offset * scale) % period, units)
 
 
 def _checked_marks(marks: Any, period: float) -> tuple[tuple[float, float, float, float], ...]:

@@ -231,7 +231,8 @@ class Scene:
             row, a column's name, or a dict by category.
         miter_limit: degrees between two segments; sharper corners than that are round.
         dash: "dashed", "dotted" or "dashdot", matplotlib's, as multiples of each line's width; lengths on, off, on,
-            ... in metres, such as (10, 5), or (offset, (10, 5)); or a `Pattern`. As `corner`, by row or category.
+            ... in the units of the width, such as (10, 5), or (offset, (10, 5)); or a `Pattern`. As `corner`, by row or
+            category. Lengths in pixels are those on the screen to within a factor of the square root of two.
         casing: a `Casing` under the lines.
         bands: colours across the line, [(reach, colour), ...] from its middle outwards, each to a share of the half
             width, the last to 1. They take the place of the line's colour, whose opacity they keep.

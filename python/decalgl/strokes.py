@@ -27,7 +27,7 @@ MITER_LIMIT = 40.0
 
 @dataclass(frozen=True)
 class PatternMark:
-    """A trapezoid along a line: metres from the period's beginning, widths as shares of the line's."""
+    """A trapezoid along a line: lengths from the period's beginning, widths as shares of the line's."""
 
     begin: float
     end: float
@@ -37,11 +37,16 @@ class PatternMark:
 
 @dataclass(frozen=True)
 class LinePattern:
-    """Marks that repeat along a line every `period` metres on the map, `offset` metres in where it begins."""
+    """Marks that repeat along a line every `period`, `offset` in where it begins.
+
+    units: "m", metres on the map; "px", pixels: as many metres of the map as 2**-k a pixel, where 2**k is the power of
+        two next to how many pixels a metre takes there, seen head-on.
+    """
 
     period: float
     marks: tuple[PatternMark, ...]
     offset: float = 0.0
+    units: WidthUnits = "m"
 
 
 @dataclass(frozen=True)
@@ -85,6 +90,7 @@ class Stroke:
     colors: uint8 (features, 4), sRGB with straight alpha; alpha 0 is not drawn.
     widths: float64 (features), metres on the map plane, or pixels on the screen as `units` says; 0 is not drawn.
     limits: of the widths, whatever their units.
+    margins: float64 (features), what of each width the limits do not count: they hold for the rest. None for none.
     styles, style_of: uint32 (features), each feature's place among the styles.
     widest: what strokes may be widened to later without preprocessing; 0 for as wide as they are.
     """
@@ -96,6 +102,7 @@ class Stroke:
     widest: float = 0.0
     units: WidthUnits = "m"
     limits: WidthLimits = WidthLimits()
+    margins: NDArray[np.float64] | None = field(default=None, repr=False)
 
     @property
     def follows_view(self) -> bool:
@@ -103,7 +110,7 @@ class Stroke:
         return self.units == "px" or self.limits != WidthLimits()
 
     def __post_init__(self) -> None:
-        _lock(self.colors, self.widths, self.style_of)
+        _lock(self.colors, self.widths, self.style_of, self.margins)
 
 
 @dataclass(frozen=True)

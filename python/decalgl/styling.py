@@ -79,13 +79,6 @@ class LineKeywords:
             _require_screen_style(self.stroke, "")
             if self.casing is not None and not isinstance(self.casing, Casing):
                 raise _wrong_type("casing", self.casing, "Casing(width=2)")
-            if self.casing is not None and _limits(self.stroke, "") != WidthLimits():
-                raise UnsupportedError(
-                    "casing= is not drawn for limited widths (width_min_px and its siblings). Leave the limits out, or"
-                    " add the casing as a layer of wider lines."
-                )
-            if self.casing is not None and self.casing.dash is not None:
-                _require_screen_style(replace(self.stroke, dash=self.casing.dash), "casing ")
 
     def resolve(self, rows: LayerRows) -> Looks:
         """Raises StyleError, ColumnError and InputError that name the layer, the keyword and the row."""
@@ -107,6 +100,8 @@ class LineKeywords:
         casing = _stroke(
             keywords, rows, "casing ", _without(colors, coloring.left_out), stroke.widths + 2.0 * sides
         )
+        if stroke.limits != WidthLimits():
+            casing = replace(casing, margins=2.0 * sides)
         if stroke.widest == 0.0:
             return casing
         return replace(casing, widest=stroke.widest + 2.0 * float(sides.max(initial=0.0)))
@@ -263,14 +258,12 @@ def _limits(keywords: StrokeKeywords, what: str) -> WidthLimits:
 
 def _require_screen_style(keywords: StrokeKeywords, what: str) -> None:
     """Raises UnsupportedError for what strokes do not have whose widths follow the view."""
-    if not keywords.follows_view:
-        return
-    for name in ("dash", "bands", "slope_correction"):
-        if getattr(keywords, name) is not None:
-            raise UnsupportedError(
-                f"{what}{name}= is not drawn for widths on the screen (width_units='px', the default, and"
-                f" width_min_px and its siblings). Leave it out, or give width_units='m' without limits."
-            )
+    if keywords.follows_view and keywords.slope_correction is not None:
+        raise UnsupportedError(
+            f"{what}slope_correction= is for widths on the map. Those on the screen (width_units='px', the default, and"
+            " width_min_px and its siblings) are as wide as they are seen on every slope. Leave it out, or give"
+            " width_units='m' without limits."
+        )
 
 
 def _require_word(keyword: str, value: Any, known: tuple[str, ...], more: str = "") -> None:
@@ -359,7 +352,12 @@ def _styles(
     styles = []
     for place in first:
         dash = dashes.at(place)
-        pattern = None if dash is None else dash.for_width(float(widths[place]))
+        pattern = None if dash is None else dash.for_width(float(widths[place]), keywords.width_units)
+        if pattern is not None and pattern.units == "px" and not keywords.follows_view:
+            raise UnsupportedError(
+                f"{what}dash: a pattern in pixels is for widths on the screen. Give width_units='px', or its lengths in"
+                " metres."
+            )
         styles.append(replace(shared, corner=corners.at(place), cap=caps.at(place), pattern=pattern))
     return tuple(styles), None if len(styles) == 1 else style_of.astype(np.uint32)
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "frame/view_setup.h"
+#include "gl/texture.h"
 #include "gl_fixture.h"
 #include "shared/view_block.h"
 #include "technique/dynamic_lines/update_segments.h"
@@ -45,6 +46,9 @@ public:
         matched_.vertex_count = static_cast<uint32_t>(vertices.size());
         matched_.line_count = static_cast<uint32_t>(records.size());
         matched_.segment_count = matched_.vertex_count - matched_.line_count;
+        ground_ = gl::Texture2D::create(memory_, "ground", GL_R32F, 2, 2);
+        ground_.update(0, 0, 0, 2, 2, terrain_.heights().data());
+        matched_.ground = &ground_;
     }
 
     void look(const Camera& camera, int width, int height) {
@@ -84,6 +88,8 @@ public:
 
     MemoryAccount& memory() { return memory_; }
     const MatchedLines& matched() const { return matched_; }
+    // Of the samples in the north-west, north-east, south-west and south-east.
+    void set_ground(const std::array<float, 4>& heights) { ground_.update(0, 0, 0, 2, 2, heights.data()); }
     const ViewBlock& block() const { return block_; }
     gl::ProgramLibrary& programs() { return programs_; }
 
@@ -93,6 +99,7 @@ private:
     Heightfield terrain_{
         std::vector<float>{lowest, highest, 0.0F, 10.0F}, 2, 2, 500000.0, 4001000.0, 1000.0, 1000.0};
     PositionGrid positions_;
+    gl::Texture2D ground_;
     MatchedLines matched_;
     ViewBlock block_{};
     gl::Buffer buffer_;

@@ -31,8 +31,10 @@ struct Rgba {
 
 class ListCase : public MatchedCase {
 public:
-    ListCase(std::vector<LineInput> lines, Plane plane)
-        : MatchedCase(on_plane(lines, plane)), plane_(plane) {}
+    ListCase(std::vector<LineInput> lines, Plane plane) : MatchedCase(on_plane(lines, plane)), plane_(plane) {
+        const auto at = [&](double x, double y) { return static_cast<float>(plane.height(dvec2(x, y))); };
+        set_ground({at(500000, 4001000), at(501000, 4001000), at(500000, 4000000), at(501000, 4000000)});
+    }
 
     void style(double half_width, const std::vector<Rgba>& colors) {
         half_width_ = half_width;

@@ -14,6 +14,7 @@ void add(const Stroke& stroke, DigestBuilder& builder) {
     add(stroke.colors, builder);
     add(stroke.widths, builder);
     add(stroke.style_of, builder);
+    add(stroke.margins, builder);
     builder.add_value(stroke.widest);
     builder.add_value(stroke.units);
     for (const double limit : {stroke.limits.least_px, stroke.limits.most_px, stroke.limits.least_metres,
@@ -26,6 +27,7 @@ void add(const Stroke& stroke, DigestBuilder& builder) {
         builder.add_value(style.slope_correction);
         builder.add_value(style.pattern.period);
         builder.add_value(style.pattern.offset);
+        builder.add_value(style.pattern.units);
         for (const PatternMark& mark : style.pattern.marks)
             for (const double value : {mark.begin, mark.end, mark.begin_width, mark.end_width})
                 builder.add_value(value);
@@ -56,6 +58,11 @@ Digest digest_of_look(const Relief& relief, const std::vector<Layer>& layers, un
     for (const Layer& layer : layers) {
         builder.add(Span<const char>(layer.name.data(), layer.name.size()));
         builder.add(Span<const char>(layer.technique.name.data(), layer.technique.name.size()));
+        if (layer.technique.options) {
+            ChoiceBytes choices;
+            layer.technique.options->write(choices);
+            add(choices.bytes(), builder);
+        }
         builder.add_value(layer.features.kind);
         add(layer.fill, builder);
         add(layer.stroke, builder);

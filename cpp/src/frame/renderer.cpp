@@ -324,10 +324,11 @@ std::vector<PickedFeature> Frame::pick(int x, int y) const {
     const std::vector<double>& positions = world();
     std::vector<PickedFeature> picked;
     const PreparedScene& scene = *state_->scene;
-    const SeenPoint point =
-        seen_point(state_->request.camera, height(),
-                   {positions[3 * pixel], positions[3 * pixel + 1], positions[3 * pixel + 2]},
-                   {state_->gradients[2 * pixel], state_->gradients[2 * pixel + 1]});
+    SeenPoint point = seen_point(state_->request.camera, height(),
+                                 {positions[3 * pixel], positions[3 * pixel + 1], positions[3 * pixel + 2]},
+                                 {state_->gradients[2 * pixel], state_->gradients[2 * pixel + 1]});
+    point.terrain = &scene.terrain;
+    point.terrain_error = state_->request.terrain_error;
     const bool in_lens = scene.lens && scene.lens->contains(x + 0.5, y + 0.5, point.x, point.y);
     for (size_t pass = scene.passes.size(); pass-- > 0;) {
         const PreparedPass& each = scene.passes[pass];

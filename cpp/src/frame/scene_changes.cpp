@@ -111,20 +111,20 @@ std::shared_ptr<const PreparedScene> edited_scene(const PreparedScene& scene, co
     require_layer(scene, edit.layer);
     const PreparedLayer& layer = scene.layers[edit.layer];
     validate(edit, layer.kind, layer.rows.size(), layer.name);
-    if (is_split(scene, edit.layer))
-        throw Error(ErrorKind::unsupported, "layer '" + layer.name +
-                                                "': polygons whose outlines have widths on the screen cannot "
-                                                "be edited; prepare the scene anew");
     auto changed = std::make_shared<PreparedScene>(scene);
-    const auto pass = std::find_if(changed->passes.begin(), changed->passes.end(),
-                                   [&](const PreparedPass& each) { return each.has_layer(edit.layer); });
-    if (pass == changed->passes.end())
+    const auto has_layer = [&](const PreparedPass& pass) { return pass.has_layer(edit.layer); };
+    if (std::none_of(changed->passes.begin(), changed->passes.end(), has_layer))
         throw Error(ErrorKind::unsupported,
                     "layers without features have no index to edit; prepare the scene anew with the first of "
                     "them");
     changed->fingerprint = SceneFingerprint(Digest{});
-    pass->prepared = pass->prepared->edited(edit, memory);
-    extend(pass->reach, edit);
+    // Of a layer that two passes share, each takes what is its own.
+    for (PreparedPass& pass : changed->passes) {
+        if (!has_layer(pass))
+            continue;
+        pass.prepared = pass.prepared->edited(edit, memory);
+        extend(pass.reach, edit);
+    }
     std::vector<int64_t> rows(layer.rows.begin(), layer.rows.end());
     const Span<const int64_t> added = edit.geometry.rows.subspan(edit.replaced.size(), edit.added_count());
     rows.insert(rows.end(), added.begin(), added.end());

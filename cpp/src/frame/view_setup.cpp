@@ -240,7 +240,10 @@ SeenPoint seen_point(const Camera& camera, int height, glm::dvec3 place, glm::dv
     point.north = {x.y + x.z * gradient.y, y.y + y.z * gradient.y};
     point.lean_x = lean.x + lean.z * gradient.x;
     point.lean_y = lean.y + lean.z * gradient.y;
+    point.up = {x.z, y.z};
+    point.lean_up = lean.z;
     point.pixels_per_metre = pixels;
+    point.height = place.z;
     return point;
 }
 

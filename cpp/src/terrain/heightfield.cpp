@@ -93,6 +93,21 @@ Heightfield Heightfield::exaggerated(double factor) const {
     return Heightfield(std::move(scaled), rows_, columns_, x0_, y0_, dx_, dy_);
 }
 
+double Heightfield::height_at(double x, double y) const {
+    const double column = std::clamp((x - x0_) / dx_, 0.0, columns_ - 1.0);
+    const double row = std::clamp((y0_ - y) / dy_, 0.0, rows_ - 1.0);
+    const auto left = std::min(static_cast<int32_t>(column), columns_ - 2);
+    const auto top = std::min(static_cast<int32_t>(row), rows_ - 2);
+    const double east = column - left, south = row - top;
+    const auto sample = [&](int32_t down, int32_t right) -> double {
+        return height(top + down, left + right);
+    };
+    const double north_west = sample(0, 0), south_east = sample(1, 1);
+    if (south > east)
+        return north_west + east * (south_east - sample(1, 0)) + south * (sample(1, 0) - north_west);
+    return north_west + east * (sample(0, 1) - north_west) + south * (south_east - sample(0, 1));
+}
+
 Bounds Heightfield::bounds() const {
     return {x0_, y0_ - (rows_ - 1) * dy_, x0_ + (columns_ - 1) * dx_, y0_};
 }

@@ -38,7 +38,7 @@ void validate(const LinePattern& pattern, const std::string& layer) {
     if (pattern.period == 0.0 && pattern.marks.empty())
         return;
     if (!std::isfinite(pattern.period) || pattern.period <= 0.0 || !std::isfinite(pattern.offset))
-        refuse(layer, "a pattern along a line needs a positive, finite period in metres");
+        refuse(layer, "a pattern along a line needs a positive, finite period");
     if (pattern.marks.empty() || pattern.marks.size() > most_pattern_marks)
         refuse(layer,
                "a pattern along a line has from 1 to " + std::to_string(most_pattern_marks) + " marks");
@@ -67,7 +67,7 @@ void validate(const std::vector<ColorBand>& bands, const std::string& layer) {
 }
 
 bool same(const LinePattern& a, const LinePattern& b) {
-    return a.period == b.period && a.offset == b.offset &&
+    return a.period == b.period && a.offset == b.offset && a.units == b.units &&
            std::equal(a.marks.begin(), a.marks.end(), b.marks.begin(), b.marks.end(),
                       [](const PatternMark& p, const PatternMark& q) {
                           return p.begin == q.begin && p.end == q.end && p.begin_width == q.begin_width &&
@@ -115,6 +115,12 @@ void validate(const Stroke& stroke, size_t features, const std::string& layer) {
                               "; widths are lengths, 0 or more");
     }
     validate(stroke.limits, layer);
+    if (!stroke.margins.empty() && stroke.margins.size() != features)
+        refuse(layer, "needs no margins of widths, or one for each of its " + std::to_string(features) +
+                          " features");
+    for (const double margin : stroke.margins)
+        if (!std::isfinite(margin) || margin < 0.0)
+            refuse(layer, "the margin of a width must be a length");
     if (!std::isfinite(stroke.widest) || stroke.widest < 0.0)
         refuse(layer, "the widest that a stroke may become must be a length");
     require_places(stroke.style_of, features, stroke.styles.size(), layer);
@@ -122,6 +128,8 @@ void validate(const Stroke& stroke, size_t features, const std::string& layer) {
         if (!(style.miter_limit >= 1.0 && style.miter_limit <= 180.0))
             refuse(layer, "a miter limit is an angle from 1 to 180 degrees");
         validate(style.pattern, layer);
+        if (style.pattern.units == WidthUnits::pixels && !stroke.follows_view())
+            refuse(layer, "a pattern in pixels needs a width on the screen");
         validate(style.bands, layer);
     }
 }

@@ -63,12 +63,14 @@ class MarkLike(Protocol):
 
 
 class PatternLike(Protocol):
-    """Marks that repeat along a line, lengths in metres on the map."""
+    """Marks that repeat along a line, lengths in metres on the map ("m") or in pixels ("px")."""
 
     @property
     def period(self) -> float: ...
     @property
     def offset(self) -> float: ...
+    @property
+    def units(self) -> str: ...
     @property
     def marks(self) -> Sequence[MarkLike]: ...
 
@@ -113,7 +115,10 @@ class LimitsLike(Protocol):
 
 
 class StrokeLike(Protocol):
-    """Colours (features, 4) uint8 straight alpha, widths (features,) and their units, each feature's style."""
+    """Colours (features, 4) uint8 straight alpha, widths (features,) and their units, each feature's style.
+
+    Limits hold for what is left of widths without margins (features,).
+    """
 
     @property
     def colors(self) -> NDArray[np.uint8]: ...
@@ -127,6 +132,8 @@ class StrokeLike(Protocol):
     def units(self) -> str: ...
     @property
     def limits(self) -> LimitsLike: ...
+    @property
+    def margins(self) -> FloatArray | None: ...
     @property
     def follows_view(self) -> bool: ...
 

@@ -19,7 +19,7 @@ from .screen import touching_on_screen
 from .strokes import Slopes, StyledStroke, styled_strokes
 
 if TYPE_CHECKING:
-    from .contract import FloatArray, IntArray, LayerLike, SceneLike, StrokeLike
+    from .contract import FloatArray, IntArray, LayerLike, SceneLike
     from .points import Strip
     from .strokes import Touch
 
@@ -98,7 +98,7 @@ def _stroke_distance(
         for strip in strips(xy):
             for stroke in strokes:
                 there = None if slopes is None else slopes[strip.index]
-                distance = _screen_borders(decals.stroke, stroke, strip, there)
+                distance = _screen_borders(decals, stroke, strip, there)
                 nearest[strip.index] = np.minimum(nearest[strip.index], distance)
         return nearest
     everything = np.concatenate([np.asarray(layer.features.coords, dtype=np.float64).reshape(-1, 2), xy])
@@ -146,7 +146,7 @@ def _borders(stroke: StyledStroke, points: Strip, slopes: Slopes | None, reach: 
 
 
 def _screen_borders(
-    stroke: StrokeLike, styled: StyledStroke, points: Strip, slopes: Slopes | None
+    decals: StrokeDecals, styled: StyledStroke, points: Strip, slopes: Slopes | None
 ) -> FloatArray:
     """Distance (n,) to the nearest border of a stroke with a width on the screen, as metres seen head-on.
 
@@ -155,7 +155,7 @@ def _screen_borders(
     if slopes is None or slopes.planes is None:
         raise ValueError("Widths on the screen need the planes that points are seen on; see `slopes_of`.")
     deepest = np.full(len(points.index), -np.inf)
-    for touch in touching_on_screen(styled, stroke, points, slopes.planes, SCREEN_LIMIT):
+    for touch in touching_on_screen(styled, decals, points, slopes.planes, SCREEN_LIMIT):
         np.maximum.at(deepest, touch.point, touch.clearance)
     distance: FloatArray = np.abs(deepest) / slopes.planes.pixels_per_metre
     return distance

@@ -21,7 +21,7 @@ from .strokes import Slopes, StyledStroke, Touch, styled_strokes
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike, StrokeLike
+    from .contract import BandLike, BoolArray, FloatArray, IntArray, LayerLike
     from .points import Strip
 
 
@@ -140,7 +140,7 @@ class _Finder:
         keys, tints = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
         gauges = [np.empty(0)]
         for stroke, first in zip(self.strokes, self.bands_at[1:], strict=True):
-            touches = _touching(self.decals.stroke, stroke, points, slopes)
+            touches = _touching(self.decals, stroke, points, slopes)
             key, share, gauge = covered_pairs(touches, count)
             keys.append(key)
             gauges.append(gauge)
@@ -170,13 +170,13 @@ class _Finder:
 
 
 def _touching(
-    stroke: StrokeLike, styled: StyledStroke, points: Strip, slopes: Slopes | None
+    decals: StrokeDecals, styled: StyledStroke, points: Strip, slopes: Slopes | None
 ) -> Iterator[Touch]:
-    if not stroke.follows_view:
+    if not decals.stroke.follows_view:
         return styled.touching(points, slopes)
     if slopes is None or slopes.planes is None:
         raise ValueError("Widths on the screen need the planes that points are seen on; see `slopes_of`.")
-    return touching_on_screen(styled, stroke, points, slopes.planes)
+    return touching_on_screen(styled, decals, points, slopes.planes)
 
 
 def covered_pairs(touches: Iterable[Touch], count: int) -> tuple[IntArray, FloatArray, FloatArray]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from .decals import follows_slopes, follows_view
 from .edges import edge_distance
+from .ground import Ground
 from .membership import Membership, membership
 from .rays import RayCaster, Surface, Viewpoint, pixel_centres, raycast, viewpoint
 from .screen import screen_planes
@@ -112,7 +113,7 @@ def slopes_of(scene: SceneLike, camera: CameraLike, size: Size, surface: Surface
 
 
 def _slopes(scene: SceneLike, view: Viewpoint, world: FloatArray, gradient: FloatArray) -> Slopes:
-    planes = screen_planes(view, world, gradient) if follows_view(scene) else None
+    planes = screen_planes(view, world, gradient, Ground(scene)) if follows_view(scene) else None
     return Slopes(gradient, view.forward, planes)
 
 

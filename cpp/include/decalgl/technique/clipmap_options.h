@@ -31,14 +31,15 @@ struct ClipmapOptions : TechniqueOptions {
     int anisotropy = 8;         // most samples along a pixel's longer side
     int tiles_a_frame = 0;      // drawn anew for a picture; 0: as many as it needs
 
+    auto members() const {
+        return std::make_tuple(solution, inner_meets, bevel_below, thin_below, widest_line, widen_from,
+                               widen_to, window, samples, anisotropy, tiles_a_frame);
+    }
     bool equals(const TechniqueOptions& other) const override {
         const auto* options = dynamic_cast<const ClipmapOptions*>(&other);
-        const auto members = [](const ClipmapOptions& o) {
-            return std::tie(o.solution, o.inner_meets, o.bevel_below, o.thin_below, o.widest_line,
-                            o.widen_from, o.widen_to, o.window, o.samples, o.anisotropy, o.tiles_a_frame);
-        };
-        return options != nullptr && members(*options) == members(*this);
+        return options != nullptr && options->members() == members();
     }
+    void write(ChoiceBytes& choices) const override { choices.add(members()); }
 };
 
 }  // namespace decalgl::clipmap

@@ -101,6 +101,7 @@ struct DistanceFieldOptions : TechniqueOptions {
     std::vector<std::vector<uint8_t>> drop_offs;  // drop_off_side^2 texels each
 
     bool equals(const TechniqueOptions& other) const override { return this == &other; }
+    void write(ChoiceBytes& choices) const override;
     bool names_widths() const override { return true; }  // or other ones, as soon as they are restyled
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 
 #include "decalgl/vector/layer.h"
 
@@ -19,11 +20,12 @@ struct DynamicOptions : TechniqueOptions {
     double cell =
         0.125;  // pixels: of vertices that fall together in one, a line keeps the first; 0: all are kept
 
+    auto members() const { return std::make_tuple(method, width_rule, cell); }
     bool equals(const TechniqueOptions& other) const override {
-        const auto* same = dynamic_cast<const DynamicOptions*>(&other);
-        return same != nullptr && method == same->method && width_rule == same->width_rule &&
-               cell == same->cell;
+        const auto* options = dynamic_cast<const DynamicOptions*>(&other);
+        return options != nullptr && options->members() == members();
     }
+    void write(ChoiceBytes& choices) const override { choices.add(members()); }
 };
 
 }  // namespace decalgl

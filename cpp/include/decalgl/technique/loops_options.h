@@ -62,6 +62,7 @@ public:
     LoopsDetail detail;
 
     bool equals(const TechniqueOptions& other) const override;
+    void write(ChoiceBytes& choices) const override;
 };
 
 }  // namespace decalgl

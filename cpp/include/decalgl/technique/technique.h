@@ -91,7 +91,13 @@ struct SeenPoint {
     std::array<double, 2> north{};
     double lean_x = 0.0;
     double lean_y = 0.0;
+    // The same for a step upwards, off the plane.
+    std::array<double, 2> up{};
+    double lean_up = 0.0;
     double pixels_per_metre = 1.0;  // seen head-on
+    double height = 0.0;
+    const Heightfield* terrain = nullptr;
+    double terrain_error = 0.0;  // pixels that the place may be off the terrain
 };
 
 class Prepared {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "decalgl/vector/choice_bytes.h"
 #include "decalgl/vector/features.h"
 #include "decalgl/vector/stroke.h"
 
@@ -21,6 +22,8 @@ class TechniqueOptions {
 public:
     virtual ~TechniqueOptions() = default;
     virtual bool equals(const TechniqueOptions& other) const = 0;
+    // All of them: a scene that was prepared with others is not taken from a file.
+    virtual void write(ChoiceBytes& choices) const = 0;
     // Whether they say how wide lines are, and the layer's widths are not read.
     virtual bool names_widths() const { return false; }
 };

@@ -2,7 +2,7 @@
 //
 //     corner   round    miter    bevel          cap   round  ( ===    butt   [===    square  [ ===
 //
-//     pattern  marks, repeated along the line by its length on the map
+//     pattern  marks, repeated along the line by its length on the map, or as it is seen
 //
 //              0   begin      end          period
 //              |     +---------+             |
@@ -31,16 +31,18 @@ enum class SlopeCorrection : uint8_t { none, thoeny, tangent };
 enum class WidthUnits : uint8_t { metres, pixels };
 
 struct PatternMark {
-    double begin = 0.0;  // metres from the period's beginning
+    double begin = 0.0;  // from the period's beginning
     double end = 0.0;
     double begin_width = 1.0;  // share of the line's width
     double end_width = 1.0;
 };
 
 struct LinePattern {
-    double period = 0.0;  // metres; 0: no pattern
-    double offset = 0.0;  // metres into the period where a line begins
+    double period = 0.0;  // 0: no pattern
+    double offset = 0.0;  // into the period where a line begins
     std::vector<PatternMark> marks;
+    WidthUnits units =
+        WidthUnits::metres;  // of all lengths; pixels: seen head-on, for widths on the screen alone
 };
 
 struct ColorBand {
@@ -83,6 +85,8 @@ struct Stroke {
     std::vector<double> widths;   // in `units`: one, or one a feature; 0: no stroke
     WidthUnits units = WidthUnits::metres;
     WidthLimits limits;
+    std::vector<double>
+        margins;  // of each width, what the limits do not count: theirs is the rest; empty: none
     std::vector<StrokeStyle> styles = {StrokeStyle{}};
     std::vector<uint32_t> style_of;  // each feature's place in `styles`; empty: the first for all
     double widest = 0.0;             // what a stroke may be widened to without preparing anew
@@ -92,6 +96,7 @@ struct Stroke {
     bool follows_view() const { return units == WidthUnits::pixels || limits.any(); }
     const uint8_t* color(size_t feature) const { return &colors[colors.size() == 4 ? 0 : 4 * feature]; }
     double width(size_t feature) const { return widths[widths.size() == 1 ? 0 : feature]; }
+    double margin(size_t feature) const { return margins.empty() ? 0.0 : margins[feature]; }
     size_t style(size_t feature) const { return style_of.empty() ? 0 : style_of[feature]; }
 };
 

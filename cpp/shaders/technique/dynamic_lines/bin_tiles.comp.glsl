@@ -7,6 +7,9 @@
 //     +-----+-/---+-----+
 //     |   --|o    |     |
 //     +-----+-----+-----+
+//
+// A driver may end the loops of one run after so many turns in all: what is left is for the next run, which goes on where
+// `progress` says.
 #include "technique/dynamic_lines/bins_layout.h"
 #include "technique/dynamic_lines/items.glsl"
 
@@ -15,12 +18,20 @@ uniform samplerBuffer segment_reaches;
 uniform ivec2 tile_grid;
 uniform uint run_count;
 uniform uint run_length;
+uniform int most_turns;
 
 layout(std430, binding = 0) readonly buffer Count {
     uint segment_count;
 };
 layout(std430, binding = 1) buffer Places {
     uint places[];  // of each tile, run by run
+};
+// Of each run, the segment and the row of its tiles to go on with.
+layout(std430, binding = 3) buffer Progress {
+    uvec2 progress[];
+};
+layout(std430, binding = 4) writeonly buffer Unfinished {
+    uint is_unfinished;
 };
 #ifdef FILL
 layout(std430, binding = 2) writeonly buffer List {
@@ -48,28 +59,41 @@ ivec2 columns_in_row(vec4 span, float reach, int row) {
     return ivec2(clamp(floor(range), vec2(0.0, -1.0), vec2(tile_grid.x, tile_grid.x - 1)));
 }
 
+// The rows of tiles that a segment touches; the other way round where there are none.
+ivec2 rows_of(vec4 span, float reach) {
+    vec2 y = vec2(min(span.y, span.w) - reach, max(span.y, span.w) + reach) / float(TILE_SIDE);
+    return reach >= 0.0 ? ivec2(clamp(floor(y), vec2(0.0), vec2(tile_grid.y - 1))) : ivec2(0, -1);
+}
+
 void main() {
     uint run = this_item();
     if (run >= item_count) return;
-    uint segment = run * run_length;
-    uint end = min(segment + run_length, segment_count);
+    uint first = run * run_length, segment = first + progress[run].x;
+    uint end = min(first + run_length, segment_count);
     if (segment >= end) return;
+    int row = int(progress[run].y), turns = 0;
     do {
         float reach = texelFetch(segment_reaches, int(segment)).r;
         vec4 span = texelFetch(segment_spans, int(segment));
-        vec2 y = vec2(min(span.y, span.w) - reach, max(span.y, span.w) + reach) / float(TILE_SIDE);
-        ivec2 rows = ivec2(clamp(floor(y), vec2(0.0), vec2(tile_grid.y - 1)));
-        if (reach >= 0.0) {
-            int row = rows.x;
+        ivec2 rows = rows_of(span, reach);
+        row = max(row, rows.x);
+        if (row <= rows.y) {
             do {
                 ivec2 columns = columns_in_row(span, reach, row);
                 int column = columns.x;
+                turns += max(columns.y - columns.x, 0) + 2;
                 if (column <= columns.y) {
                     do {
                         add_to_tile(ivec2(column, row), run, segment);
                     } while (++column <= columns.y);
                 }
-            } while (++row <= rows.y);
+            } while (++row <= rows.y && turns < most_turns);
         }
-    } while (++segment < end);
+        if (row > rows.y) {
+            ++segment;
+            row = 0;
+        }
+    } while (segment < end && ++turns < most_turns);
+    progress[run] = uvec2(segment - first, row);
+    if (segment < end) is_unfinished = 1u;
 }

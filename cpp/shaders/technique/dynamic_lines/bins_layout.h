@@ -16,6 +16,8 @@
 //     joints  next x, y as bits; slot; flags
 #define SEGMENT_BEGINS 1u  // of an open line
 #define SEGMENT_ENDS 2u
-#define SEGMENT_TURNS 4u  // at its end so much that the gap to the next one shows
+#define SEGMENT_TURNS 4u         // at its end so much that the gap to the next one shows
+#define SEGMENT_INSIDE_RIGHT 8u  // of a ring: its polygon lies to the right
+//     arcs    of lines with patterns: where it begins along them, and how long it is (line_patterns.glsl)
 
 #endif

@@ -13,6 +13,10 @@
 //
 //     vec2(place - base_place) * quantum - base_rest
 //
+// Lengths along a line are counted around: what is whole of the length that 2^32 stand for is a whole number of the
+// pattern's periods in every octave (line_styles.h), so nothing is lost on long lines. Those of matched vertices stand in a
+// buffer of their own, where there is a pattern at all.
+//
 // A segment names matched vertices. `previous` is NO_VERTEX where an open line begins, `next` where it ends. In a
 // closed line, the segment before the first is the last, and its previous vertex is the one before the last. After
 // simplification, all four are vertices that are left.
@@ -31,10 +35,12 @@ using uint = uint32_t;
 
 #define NO_VERTEX 0xFFFFFFFFu
 #define LINE_CLOSED 1u
+#define LINE_INSIDE_RIGHT 2u  // of a ring: its polygon lies to the right
 
 struct SourceVertex {
     ivec2 place;
-    float arc;  // metres on the map from the line's first vertex
+    uint
+        arc;  // of a line with a pattern, metres on the map from its first vertex, in 2^-32 of a length of its own
     uint line;
 };
 

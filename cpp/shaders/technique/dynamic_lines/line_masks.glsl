@@ -34,6 +34,11 @@ uvec2 beyond_line(vec2 point, vec2 inwards) {
     return samples_beyond(direction_of(inwards), -dot(point, inwards));
 }
 
+// What is left between two bars at the vertex where they meet.
+uvec2 wedge_mask(vec2 at, vec2 incoming, vec2 outgoing) {
+    return beyond_line(at, incoming) & beyond_line(at, -outgoing);
+}
+
 struct Stroke {
     vec2 from;
     vec2 to;

@@ -3,8 +3,9 @@
 // Corners are told from both segments that meet there, since either one's box may be all that holds the point.
 //
 // JOINED   corners and caps that are not round
+// STYLED   patterns along lines, and colours across
 #include "shared/stroke.glsl"
-#include "technique/dynamic_lines/line_styles.h"
+#include "technique/dynamic_lines/line_looks.glsl"
 
 struct LinePart {
     vec2 from;
@@ -13,6 +14,7 @@ struct LinePart {
     vec2 outgoing;
     bool begins;
     bool ends;
+    vec3 marks;  // shares of the width that the pattern leaves: at the point's foot and at both ends; below 0: none
 };
 
 vec2 unit_vector(vec2 way) {
@@ -26,12 +28,14 @@ float distance_to_part(LinePart part) {
     return length(part.from + share * way);
 }
 
-bool covers(LinePart part, uint kind, float half_width) {
+// `whole`: half the width of all of the line.
+bool covers(LinePart part, LineLook look, float whole) {
+    float half_width = whole * look.reach;
 #ifdef JOINED
-    uint corner = kind & CORNER_MASK, cap = kind >> CAP_SHIFT & 3u;
-    float limit = cos(radians(float(kind >> MITER_SHIFT) / 256.0));
+    uint corner = corner_of(look.kind), cap = cap_of(look.kind);
+    float limit = cos(miter_limit(look.kind));
     vec2 direction = unit_vector(part.to - part.from);
-    float overlap = 1e-3 * half_width, longer = cap == square_cap ? half_width : 0.0;
+    float overlap = 1e-3 * half_width, longer = cap == square_cap ? whole : 0.0;
     float across = cross_product(direction, -part.from);
     vec2 beyond = vec2(part.begins ? longer : overlap, part.ends ? longer : overlap);
     float reach = bar_reach(-part.from, -part.to, direction, across, beyond);
@@ -39,6 +43,15 @@ bool covers(LinePart part, uint kind, float half_width) {
                                 : corner_reach(corner, -part.from, part.incoming, direction, limit);
     float at_to = part.ends ? cap_reach(cap, -part.to)
                             : corner_reach(corner, -part.to, direction, part.outgoing, limit);
+#ifdef STYLED
+    if (look.pattern != NO_PATTERN) {
+        // Joints fill the gap between bars alone, so that marks end flat.
+        bool before = dot(part.from, direction) >= 0.0 && (part.begins || dot(part.from, part.incoming) <= 0.0);
+        bool after = dot(part.to, direction) <= 0.0 && (part.ends || dot(part.to, part.outgoing) >= 0.0);
+        vec3 widths = min(vec3(half_width), whole * part.marks);
+        return reach <= widths.x || (before && at_from <= widths.y) || (after && at_to <= widths.z);
+    }
+#endif
     return min(reach, min(at_from, at_to)) <= half_width;
 #else
     return distance_to_part(part) <= half_width;

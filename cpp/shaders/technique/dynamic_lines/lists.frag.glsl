@@ -3,6 +3,8 @@
 //
 // UNION   all that is shown looks the same and is opaque: any entry tells
 // IDS     1 + slot of the topmost line; lists need not be sorted
+#include "technique/dynamic_lines/line_entry.glsl"
+
 uniform usamplerBuffer list_heads;
 uniform usamplerBuffer list_next;
 uniform usamplerBuffer list_entries;
@@ -25,40 +27,51 @@ uint entry_after(uint entry) {
     return texelFetch(list_next, int(entry)).r;
 }
 
-// Slot and colour.
+// Which line, and its colour.
 uvec2 entry_at(uint entry) {
     return texelFetch(list_entries, int(entry)).rg;
 }
 
 #ifdef IDS
 
-uint topmost(uint entry) {
-    uint slot = 0u;
+// 1 + slot of the topmost line that is shown, or 0: a band of no colour hides those of its line that lie farther out.
+uint topmost_id(uint first) {
+    uvec2 below = uvec2(list_end, 0u), best;
+    bool found;
     do {
-        slot = max(slot, entry_at(entry).x + 1u);
-        entry = entry_after(entry);
-    } while (entry != list_end);
-    return slot;
+        uint entry = first;
+        best = uvec2(0u);
+        found = false;
+        do {
+            uvec2 line = entry_at(entry);
+            bool is_next = line.x < below.x && !is_same_line(line.x, below.x) && (!found || line.x > best.x);
+            best = is_next ? line : best;
+            found = found || is_next;
+            entry = entry_after(entry);
+        } while (entry != list_end);
+        below = best;
+    } while (found && unpackUnorm4x8(best.y).a == 0.0);
+    return found ? slot_of_entry(best.x) + 1u : 0u;
 }
 
 void main() {
     uint entry = first_entry();
     id = 0u;
-    if (entry != list_end) id = topmost(entry);
+    if (entry != list_end) id = topmost_id(entry);
 }
 
 #else
 
 vec4 composite(uint entry) {
     vec4 sum = vec4(0.0);
-    uint slot = list_end;
+    uint before = list_end;
     do {
         uvec2 line = entry_at(entry);
         vec4 straight = unpackUnorm4x8(line.y);
         // A line covers a pixel once, however many of its segments do.
-        float weight = line.x == slot ? 0.0 : (1.0 - sum.a) * straight.a;
+        float weight = is_same_line(line.x, before) ? 0.0 : (1.0 - sum.a) * straight.a;
         sum += weight * vec4(straight.rgb, 1.0);
-        slot = line.x;
+        before = line.x;
         entry = entry_after(entry);
     } while (entry != list_end && sum.a < 0.999);
     return sum;

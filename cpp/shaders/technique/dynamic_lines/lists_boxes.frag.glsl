@@ -2,9 +2,15 @@
 //
 // THESIS   distances on the map, by widths that grow with the distance (equations 4.1 and 4.2); else on the screen
 // JOINED   corners and caps that are not round
+// STYLED   patterns along lines, and colours across; goes with JOINED
 // LIMITS   widths that depend on the depth
 // LENS     other looks inside the lens
+#include "shared/stroke.glsl"
+#include "technique/dynamic_lines/line_entry.glsl"
 #include "technique/dynamic_lines/line_looks.glsl"
+#ifdef STYLED
+#include "technique/dynamic_lines/line_patterns.glsl"
+#endif
 #include "technique/dynamic_lines/line_point.glsl"
 #include "technique/dynamic_lines/lists_buffers.glsl"
 #include "technique/dynamic_lines/screen_plane.glsl"
@@ -12,6 +18,10 @@
 flat in vec4 part_ends;
 flat in vec4 part_joints;
 flat in uvec2 part_line;
+
+#ifdef STYLED
+flat in uvec2 part_arcs;
+#endif
 
 uniform sampler2D surface_texture;
 uniform uint entry_room;
@@ -28,6 +38,15 @@ bool ends() {
     return (part_line.y & 2u) != 0u;
 }
 
+// Shares of the width that the pattern leaves at a share of the way on the map, and at both ends.
+vec3 marks_at(LineLook look, float share, float pixels_per_metre) {
+    vec3 marks = vec3(1.0);
+#ifdef STYLED
+    if (look.pattern != NO_PATTERN) marks = widths_along(phases_of(look.pattern, part_arcs, pixels_per_metre), share);
+#endif
+    return marks;
+}
+
 #ifdef THESIS
 
 bool covered(vec2 pixel, ScreenPlane plane, LineLook look) {
@@ -35,9 +54,12 @@ bool covered(vec2 pixel, ScreenPlane plane, LineLook look) {
     float pixels_per_metre = plane.pixels_per_metre / length(ray_direction_at(pixel));
     float half_width = half_width_in_pixels(look, part_line.x, pixels_per_metre) / pixels_per_metre;
     vec4 at = part_ends - plane.place.xyxy;
+    vec2 way = at.zw - at.xy;
+    float share = -dot(at.xy, way) / max(dot(way, way), 1e-12);
     LinePart part = LinePart(at.xy, at.zw, unit_vector(part_ends.xy - part_joints.xy),
-                             unit_vector(part_joints.zw - part_ends.zw), begins(), ends());
-    return half_width > 0.0 && covers(part, look.kind, half_width);
+                             unit_vector(part_joints.zw - part_ends.zw), begins(), ends(),
+                             marks_at(look, share, pixels_per_metre));
+    return half_width > 0.0 && covers(part, look, half_width);
 }
 
 #else
@@ -50,20 +72,23 @@ vec2 direction_on_screen(ScreenPlane plane, vec4 ends) {
 bool covered(vec2 pixel, ScreenPlane plane, LineLook look) {
     float half_width = half_width_in_pixels(look, part_line.x, plane.pixels_per_metre);
     ScreenSegment segment = on_screen(plane, part_ends);
-    LinePart part = LinePart(segment.from, segment.to, vec2(0.0), vec2(0.0), begins(), ends());
+    float share = share_on_map(segment, foot_share(segment)).x;
+    LinePart part = LinePart(segment.from, segment.to, vec2(0.0), vec2(0.0), begins(), ends(),
+                             marks_at(look, share, plane.pixels_per_metre));
 #ifdef JOINED
     part.incoming = direction_on_screen(plane, vec4(part_joints.xy, part_ends.xy));
     part.outgoing = direction_on_screen(plane, vec4(part_ends.zw, part_joints.zw));
 #endif
-    return segment.seen && half_width > 0.0 && covers(part, look.kind, half_width);
+    return segment.seen && half_width > 0.0 && covers(part, look, half_width) &&
+           is_on_ground(plane, segment, part_ends, half_width);
 }
 
 #endif
 
-void append(uint list, vec4 color) {
+void append(uint list, uint line, vec4 color) {
     uint entry = atomicAdd(entry_total, 1u);
     if (entry >= entry_room) return;
-    entries[entry] = uvec2(part_line.x, packUnorm4x8(color));
+    entries[entry] = uvec2(line, packUnorm4x8(color));
     next[entry] = atomicExchange(heads[list], entry);
     if (atomicAdd(counts[list], 1u) >= longest_list) is_too_long = 1u;
 }
@@ -77,5 +102,6 @@ void main() {
 #endif
     LineLook look = look_of(part_line.x);
     vec2 pixel = pixel_from_centre();
-    if (look.color.a > 0.0 && covered(pixel, screen_plane(pixel, surface), look)) append(list_of(place), look.color);
+    if (takes_room(look) && covered(pixel, screen_plane(pixel, surface), look))
+        append(list_of(place), line_entry(part_line.x, look.kind), look.color);
 }

@@ -11,10 +11,14 @@
 //
 // THESIS   widths by the distance from the eye; else by the depth, as the screen has it
 // JOINED   corners and caps that are not round
+// STYLED   patterns along lines, and colours across; goes with JOINED
 // LIMITS   widths that depend on the depth
 // LENS     other looks inside the lens
 #include "technique/dynamic_lines/line_looks.glsl"
 #include "technique/dynamic_lines/project.glsl"
+#ifdef STYLED
+#include "technique/dynamic_lines/segment_arcs.glsl"
+#endif
 
 layout(points) in;
 layout(triangle_strip, max_vertices = 14) out;
@@ -24,6 +28,10 @@ flat in int segment_index[];
 flat out vec4 part_ends;    // on the map, relative to the base: from x, y; to x, y
 flat out vec4 part_joints;  // the vertices before and after
 flat out uvec2 part_line;   // slot; 1: begins here, 2: ends here
+
+#ifdef STYLED
+flat out uvec2 part_arcs;
+#endif
 
 uniform usamplerBuffer line_segments;
 uniform vec2 ground_heights;  // the lowest and the highest, metres from the view's base
@@ -75,9 +83,8 @@ BoxReach reach_of_box(vec2 a, vec2 b, uint slot) {
     uint kind = look_of(slot).kind;
     float tip = 1.0, corner = 1.0;
 #ifdef JOINED
-    float half_limit = 0.5 * radians(float(kind >> MITER_SHIFT) / 256.0);
-    if ((kind & CORNER_MASK) == 1u) tip = max(1.0, 1.0 / tan(half_limit));
-    corner = max(1.4143, 1.0 / sin(half_limit));
+    if (corner_of(kind) == 1u) tip = max(1.0, 1.0 / tan(0.5 * miter_limit(kind)));
+    corner = joint_reach(kind);
 #endif
 #ifdef THESIS
     float scale = is_perspective() ? length(ray_direction_dx.xyz) : length(ray_origin_dx.xyz);
@@ -116,10 +123,20 @@ BoxEnd box_end(vec2 before, vec2 vertex, vec2 after, vec2 along, BoxReach reach,
     return straight;
 }
 
-void emit(vec3 corner, vec4 ends, vec4 joints, uvec2 line) {
-    part_ends = ends;
-    part_joints = joints;
-    part_line = line;
+struct Part {
+    vec4 ends;
+    vec4 joints;
+    uvec2 line;
+    uvec2 arcs;
+};
+
+void emit(vec3 corner, Part part) {
+    part_ends = part.ends;
+    part_joints = part.joints;
+    part_line = part.line;
+#ifdef STYLED
+    part_arcs = part.arcs;
+#endif
     gl_Position = clip_from_base * vec4(corner, 1.0);
     EmitVertex();
 }
@@ -135,14 +152,18 @@ void main() {
     BoxReach reach = reach_of_box(a, b, slot);
     BoxEnd first = box_end(before, a, b, along, reach, begins), last = box_end(a, b, after, along, reach, ends);
     vec2 heights = ground_heights + vec2(-reach.across, reach.across);
-    uvec2 line = uvec2(slot, (begins ? 1u : 0u) | (ends ? 2u : 0u));
+    uvec2 line = uvec2(slot, (begins ? 1u : 0u) | (ends ? 2u : 0u)), arcs = uvec2(0u);
+#ifdef STYLED
+    arcs = arcs_of(segment, length(b - a), slot);
+#endif
+    Part part = Part(vec4(a, b), vec4(before, after), line, arcs);
     // Fourteen corners make a strip of all six sides (Evans et al. 1996): bits of right, end and high.
     for (int i = 0; i < 14; ++i) {
         bool left = (0x287a >> i & 1) == 0, at_end = (0x02af >> i & 1) != 0, high = (0x31e3 >> i & 1) != 0;
         BoxEnd end = first;
         if (at_end) end = last;
         vec2 place = (at_end ? b + end.beyond * along : a - end.beyond * along) + (left ? end.side : -end.side);
-        emit(vec3(place, high ? heights.y : heights.x), vec4(a, b), vec4(before, after), line);
+        emit(vec3(place, high ? heights.y : heights.x), part);
     }
     EndPrimitive();
 }

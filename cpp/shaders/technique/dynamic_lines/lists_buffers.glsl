@@ -3,11 +3,12 @@
 //     heads     first entry of each pixel's list, or list_end
 //     counts    entries of each pixel
 //     next      the entry after each entry, or list_end
-//     entries   slot of the line and its colour, straight alpha
+//     entries   which line, and its colour, straight alpha
 //
 //     pixel   heads[pixel] ──▶ next[..] ──▶ next[..] ──▶ list_end
 //
-// Entries are in whatever order fragments came. Their slots are the draw order: the highest lies on top.
+// Entries are in whatever order fragments came. Which line is a number (line_entry.glsl) that follows the draw order: the
+// highest lies on top.
 const uint list_end = 0xFFFFFFFFu;
 
 layout(std430, binding = 0) buffer Heads {

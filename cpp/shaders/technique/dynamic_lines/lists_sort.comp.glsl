@@ -4,6 +4,7 @@
 // A driver may end the loops of one run after so many turns in all: what is left is for the next run, which goes on
 // where `sorted` says.
 #include "technique/dynamic_lines/items.glsl"
+#include "technique/dynamic_lines/line_entry.glsl"
 #include "technique/dynamic_lines/lists_buffers.glsl"
 
 layout(std430, binding = 5) buffer Sorted {
@@ -16,13 +17,13 @@ const uint all_sorted = 0xFFFFFFFFu;
 const float opaque = 0.999;
 
 struct Composite {
-    uint slot;    // of the entry before; a line counts once
+    uint line;    // of the entry before; a line counts once
     float clear;  // how much of what lies behind shows through
 };
 
 void add_entry(inout Composite composite, uvec2 entry) {
-    if (entry.x != composite.slot) composite.clear *= 1.0 - unpackUnorm4x8(entry.y).a;
-    composite.slot = entry.x;
+    if (!is_same_line(entry.x, composite.line)) composite.clear *= 1.0 - unpackUnorm4x8(entry.y).a;
+    composite.line = entry.x;
 }
 
 // The topmost entry from here on comes to stand here.

@@ -4,6 +4,8 @@
 //     |  \  u  |     samples are missing their neighbours stand in, since a line may be seen beside a hole.
 //     | l   \  |
 //     SW ---- SE
+//
+// ARCS   some line has a pattern: how far along it each vertex lies
 #include "technique/dynamic_lines/items.glsl"
 #include "technique/dynamic_lines/subdivision.glsl"
 
@@ -14,6 +16,14 @@ uniform float stand_in_height;
 layout(std430, binding = 0) writeonly buffer Vertices {
     MatchedVertex vertices[];
 };
+
+#ifdef ARCS
+uniform samplerBuffer arc_lengths;  // of each line: metres that 2^32 in `arc` stand for; 0: no pattern
+
+layout(std430, binding = 1) writeonly buffer Arcs {
+    uint arcs[];
+};
+#endif
 
 const float missing_height = -1e30;
 
@@ -57,6 +67,20 @@ float height_at(ivec2 place) {
     return north_west + dot(slope, inside);
 }
 
+#ifdef ARCS
+// A share of the way from one vertex to the next. Whole turns of `arc` are told by the distance.
+uint arc_between(SourceVertex from, SourceVertex to, double share) {
+    double whole = double(texelFetch(arc_lengths, int(from.line)).r);
+    if (whole == 0.0lf) return 0u;
+    const double turn = 4294967296.0lf;
+    dvec2 way = dvec2(to.place) - dvec2(from.place);
+    double turned = double(to.arc - from.arc) / turn;
+    double turns = round(sqrt(way.x * way.x + way.y * way.y) * steps.x / whole - turned) + turned;
+    double at = share * turns;
+    return from.arc + uint((at - floor(at)) * (turn - 1.0lf));
+}
+#endif
+
 void main() {
     uint vertex = this_item();
     if (vertex >= item_count) return;
@@ -64,11 +88,20 @@ void main() {
     SourceVertex source = source_at(source_index);
     uint first = texelFetch(piece_offsets, int(source_index)).r;
     ivec2 place = source.place;
+#ifdef ARCS
+    uint arc = source.arc;
+#endif
     if (vertex > first) {
-        ivec2 next = source_at(source_index + 1u).place;
-        double share = double(vertex - first) / double(pieces_of(place, next));
-        dvec2 way = dvec2(next) - dvec2(place);
+        SourceVertex next = source_at(source_index + 1u);
+        double share = double(vertex - first) / double(pieces_of(place, next.place));
+        dvec2 way = dvec2(next.place) - dvec2(place);
         place += ivec2(round(way * share));
+#ifdef ARCS
+        arc = arc_between(source, next, share);
+#endif
     }
+#ifdef ARCS
+    arcs[this_record()] = arc;
+#endif
     vertices[this_record()] = MatchedVertex(place, height_at(place), source.line);
 }

@@ -12,7 +12,7 @@ uniform usamplerBuffer source_lines;
 
 SourceVertex source_at(uint index) {
     uvec4 texel = texelFetch(source_vertices, int(index));
-    return SourceVertex(ivec2(texel.xy), uintBitsToFloat(texel.z), texel.w);
+    return SourceVertex(ivec2(texel.xy), texel.z, texel.w);
 }
 
 LineRecord source_line(uint index) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "decalgl/core/error.h"
 
@@ -68,6 +69,20 @@ void validate(const LevelOfDetail& lod) {
         refuse("the extent of a texture of levels of detail must be (x0, y0, x1, y1)");
 }
 
+void write_category(const NetworkCategory& category, ChoiceBytes& choices) {
+    choices.add(category.name);
+    choices.add(category.styles.size());
+    for (const NetworkStyle& style : category.styles)
+        choices.add(std::tie(style.lod, style.width, style.main, style.main_color, style.border_color,
+                             style.texture_share));
+    const LinePattern& pattern = category.pattern;
+    choices.add(std::tie(category.caps, category.slope_correction, category.raster, category.raster_length,
+                         category.sketch.amplitude, category.sketch.length, pattern.period, pattern.offset));
+    choices.add(pattern.marks.size());
+    for (const PatternMark& mark : pattern.marks)
+        choices.add(std::tie(mark.begin, mark.end, mark.begin_width, mark.end_width));
+}
+
 }  // namespace
 
 void validate(const DistanceFieldOptions& options) {
@@ -96,6 +111,21 @@ void validate(const DistanceFieldOptions& options) {
             refuse("a drop-off must have " + std::to_string(drop_off_side) + " x " +
                    std::to_string(drop_off_side) + " texels");
     validate(options.lod);
+}
+
+void DistanceFieldOptions::write(ChoiceBytes& choices) const {
+    choices.add(categories.size());
+    for (const NetworkCategory& category : categories)
+        write_category(category, choices);
+    choices.add(category_of);
+    choices.add(std::tie(lod.source, lod.value, lod.near, lod.far, lod.space, lod.extent, lod.width,
+                         lod.height, lod.texels));
+    choices.add(
+        std::tie(widths_at, bits, drop_off, blending, borders, keep_depth, mend_intrusion, mend_protrusion));
+    choices.add(rasters.size());
+    for (const NetworkRaster& raster : rasters)
+        choices.add(std::tie(raster.width, raster.height, raster.texels));
+    choices.add(drop_offs);
 }
 
 }  // namespace decalgl

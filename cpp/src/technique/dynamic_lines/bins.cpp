@@ -14,15 +14,17 @@
 namespace decalgl {
 namespace {
 
-// Runs: enough for all cores, as long as the counts of all tiles stay few.
+// Runs: enough for all cores, as long as the counts of all tiles stay few, which are summed up for every view. The cores of a
+// CPU are few.
 constexpr uint32_t shortest_run = 512;
+constexpr uint32_t least_runs = 8;
 constexpr uint32_t most_runs = 2048;
 constexpr uint32_t most_counts = 1U << 23;
+constexpr uint32_t most_counts_on_cpu = 1U << 19;
 
-// Pixels beyond its width that a segment is looked for: the ground that a pixel sees is not the ground under the line.
-// Jitters and the terrain's level of detail come to it.
-constexpr float slack_pixels = 2.0F;
-constexpr float slack_share = 0.5F;
+// Mesa's software rasteriser ends the loops of one shader run after 65,535 turns in all, up to 16 invocations together. A row of
+// tiles is never left half done.
+constexpr int most_turns = 65535 / 16 - 4096 / TILE_SIDE;
 
 uint32_t divided(uint32_t count, uint32_t by) {
     return (count + by - 1) / by;
@@ -37,22 +39,33 @@ gl::TextureBuffer make_texels(const MemoryAccount& memory, GLenum format, size_t
 
 LineBins::LineBins(const MemoryAccount& memory) : memory_(memory), no_vertices_(gl::VertexArray::create()) {}
 
-void LineBins::reserve(const View& view, uint32_t segments) {
+void LineBins::reserve(const View& view, uint32_t segments, bool with_arcs) {
     grid_ = {static_cast<int>(divided(static_cast<uint32_t>(view.width), TILE_SIDE)),
              static_cast<int>(divided(static_cast<uint32_t>(view.height), TILE_SIDE))};
     const auto tiles = static_cast<uint32_t>(grid_.x * grid_.y);
-    run_count_ = std::clamp(segments / shortest_run, 1U, std::clamp(most_counts / tiles, 1U, most_runs));
+    const bool software = gl::Context::require_current().info().software;
+    const uint32_t counts_room = software ? most_counts_on_cpu : most_counts;
+    run_count_ =
+        std::clamp(segments / shortest_run, 1U, std::clamp(counts_room / tiles, least_runs, most_runs));
     run_length_ = std::max(divided(segments, run_count_), 1U);
-    if (segments > segment_room_ || !ends_) {
+    if (segments > segment_room_ || !ends_ || with_arcs != static_cast<bool>(arcs_)) {
         segment_room_ = 0;
-        for (gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_})
+        for (gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_, &arcs_})
             *buffer = gl::TextureBuffer();
         ends_ = make_texels(memory_, GL_RGBA32F, 16, segments);
         joints_ = make_texels(memory_, GL_RGBA32UI, 16, segments);
         spans_ = make_texels(memory_, GL_RGBA32F, 16, segments);
         reaches_ = make_texels(memory_, GL_R32F, 4, segments);
+        if (with_arcs)
+            arcs_ = make_texels(memory_, GL_RG32UI, 8, segments);
         segment_room_ = segments;
     }
+    if (run_count_ > progress_.bytes() / sizeof(glm::uvec2)) {
+        progress_ = gl::Buffer();
+        progress_ = gl::Buffer::create(memory_, "dynamic: bins", sizeof(glm::uvec2) * run_count_);
+    }
+    if (!unfinished_)
+        unfinished_ = gl::Buffer::create(memory_, "dynamic: bins", sizeof(uint32_t));
     const uint32_t counts = tiles * run_count_ + 1;
     if (counts > places_.texels()) {
         places_ = gl::TextureBuffer();
@@ -64,7 +77,8 @@ void LineBins::reserve(const View& view, uint32_t segments) {
 
 void LineBins::update(const View& view, const MatchedLines& lines, const SegmentList& segments,
                       const LineLooks& looks, gl::ProgramLibrary& programs) {
-    reserve(view, segments.most);
+    reserve(view, segments.most, looks.summary().is_styled);
+    ground_ = lines.ground;
     if (view.antialias == Antialias::coverage && !half_planes_)
         half_planes_ =
             gl::TextureBuffer::from(memory_, "dynamic: half planes", GL_RG32UI, make_half_planes());
@@ -87,14 +101,19 @@ void LineBins::project(const View& view, const MatchedLines& lines, const Segmen
     segments.segments.bind(2);
     looks.bind(program, 3);
     LatticeBase(lines.lattice, view).set(program);
-    program.set("slack", slack_pixels + static_cast<float>(view.terrain_error));
-    program.set("slack_share", slack_share);
+    set_ground_slack(program, view);
+    if (lines.arcs) {
+        program.set("line_arcs", 4);
+        lines.arcs.bind(4);
+    }
     segments.count.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
     dispatch(program, segments.most, [&](uint32_t first, uint32_t count) {
         bind_records(1, ends_.buffer(), 16, first, count);
         bind_records(2, joints_.buffer(), 16, first, count);
         bind_records(3, spans_.buffer(), 16, first, count);
         bind_records(4, reaches_.buffer(), 4, first, count);
+        if (arcs_)
+            bind_records(5, arcs_.buffer(), 8, first, count);
     });
 }
 
@@ -111,7 +130,16 @@ void LineBins::run_tiles(const SegmentList& segments, const gl::Flags& flags, gl
     places_.buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
     if (list_)
         list_.buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 2);
-    dispatch(program, run_count_);
+    progress_.bind_base(GL_SHADER_STORAGE_BUFFER, 3);
+    unfinished_.bind_base(GL_SHADER_STORAGE_BUFFER, 4);
+    program.set("most_turns", most_turns);
+    progress_.clear();
+    uint32_t is_unfinished = 0;
+    do {
+        unfinished_.clear();
+        dispatch(program, run_count_);
+        unfinished_.read(0, sizeof(is_unfinished), &is_unfinished);
+    } while (is_unfinished != 0);
 }
 
 // The list is as long as the counts say, and never shorter.
@@ -139,8 +167,8 @@ void LineBins::sort(const SegmentList& segments, gl::ProgramLibrary& programs) {
 }
 
 uint64_t LineBins::bytes() const {
-    uint64_t bytes = sums_.bytes() + half_planes_.buffer().bytes();
-    for (const gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_, &places_, &list_})
+    uint64_t bytes = sums_.bytes() + half_planes_.buffer().bytes() + progress_.bytes() + unfinished_.bytes();
+    for (const gl::TextureBuffer* buffer : {&ends_, &joints_, &spans_, &reaches_, &arcs_, &places_, &list_})
         bytes += buffer->buffer().bytes();
     return bytes;
 }

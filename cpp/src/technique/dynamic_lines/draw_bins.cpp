@@ -11,10 +11,12 @@ namespace decalgl {
 namespace {
 
 constexpr GLuint half_planes_unit = 8;  // beyond those of frame's own programs
+constexpr GLuint arcs_unit = 7;
 
 }  // namespace
 
-void LineBins::bind(gl::Program& program, const GBufferView& gbuffer, const LineLooks& looks) const {
+void LineBins::bind(gl::Program& program, const View& view, const GBufferView& gbuffer,
+                    const LineLooks& looks) const {
     const std::pair<const char*, const gl::TextureBuffer*> buffers[] = {{"tile_list", &list_},
                                                                         {"segment_ends", &ends_},
                                                                         {"segment_joints", &joints_},
@@ -35,18 +37,25 @@ void LineBins::bind(gl::Program& program, const GBufferView& gbuffer, const Line
         program.set("half_planes", static_cast<int>(half_planes_unit));
         half_planes_.bind(half_planes_unit);
     }
+    bind_ground(program, *ground_, view);
+    if (arcs_) {
+        program.set("segment_arcs", static_cast<int>(arcs_unit));
+        arcs_.bind(arcs_unit);
+    }
     program.set("tile_grid", grid_);
     program.set("run_count", static_cast<int>(run_count_));
 }
 
-void LineBins::draw_tiles(gl::Flags flags, const GBufferView& gbuffer, const LineLooks& looks,
-                          gl::ProgramLibrary& programs) const {
+void LineBins::draw_tiles(gl::Flags flags, const View& view, const GBufferView& gbuffer,
+                          const LineLooks& looks, gl::ProgramLibrary& programs) const {
     for (const std::string& flag : looks.flags())
         flags.insert(flag);
+    if (looks.summary().has_sides)
+        flags.insert("SIDES");
     const bool is_gathered = static_cast<bool>(gbuffer.set_gathered);
     gl::Program& program = programs.get(is_gathered ? "dynamic_bins_gathered" : "dynamic_bins", flags);
     program.use();
-    bind(program, gbuffer, looks);
+    bind(program, view, gbuffer, looks);
     no_vertices_.bind();
     if (is_gathered) {
         gbuffer.set_gathered(program);
@@ -77,17 +86,17 @@ void LineBins::draw(const View& view, const GBufferView& gbuffer, const LineLook
             flags.insert("TRANSLUCENT");
         else if (summary.has_one_look)
             flags.insert("UNION");
-        draw_tiles(std::move(flags), gbuffer, looks, programs);
+        draw_tiles(std::move(flags), view, gbuffer, looks, programs);
     }
     glDisable(GL_BLEND);
 }
 
-void LineBins::draw_ids(const GBufferView& gbuffer, const LineLooks& looks,
+void LineBins::draw_ids(const View& view, const GBufferView& gbuffer, const LineLooks& looks,
                         gl::ProgramLibrary& programs) const {
     const GLuint nothing[4] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
     if (entry_count_ > 0)
-        draw_tiles({"IDS"}, gbuffer, looks, programs);
+        draw_tiles({"IDS"}, view, gbuffer, looks, programs);
 }
 
 }  // namespace decalgl

@@ -32,6 +32,7 @@ void DynamicLines::upload(std::shared_ptr<const Prepared> prepared, std::shared_
             segments_ = std::make_unique<SegmentUpdate>(lines_, next->cell, ground_heights_, memory);
         }
     }
+    lines_.ground = terrain.heights;
     looks_.upload(*next, next_lens.get(), memory);
     if (!bins_) {
         bins_ = std::make_unique<LineBins>(memory);
@@ -50,6 +51,11 @@ LineMethod DynamicLines::method_for(const View& view) const {
             ErrorKind::unsupported,
             "dynamic lines by lists have no anti-aliasing by coverage; choose antialias 'fxaa', 'ssaa', "
             "'msaa' or 'none', or method 'bins' with width_rule 'screen'");
+    const bool has_sides = looks_.summary().has_sides;
+    if (has_sides && (needs_lists || prepared_->method == LineMethod::lists))
+        throw Error(ErrorKind::unsupported,
+                    "dynamic lines by lists have outlines on both sides of the border alone; give them "
+                    "mode 'normal', or choose method 'bins' with width_rule 'screen'");
     if (needs_lists && prepared_->method == LineMethod::bins)
         throw Error(ErrorKind::unsupported,
                     "dynamic lines: method 'bins' has no width_rule 'thesis'; choose method 'lists'");
@@ -90,7 +96,7 @@ void DynamicLines::draw_ids(const View& view, const GBufferView& gbuffer, gl::Pr
     if (method_ == LineMethod::lists)
         lists_->draw_ids(view, gbuffer, listed(), programs);
     else
-        bins_->draw_ids(gbuffer, looks_, programs);
+        bins_->draw_ids(view, gbuffer, looks_, programs);
 }
 
 }  // namespace decalgl

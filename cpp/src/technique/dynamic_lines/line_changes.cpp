@@ -8,6 +8,7 @@
 #include "core/growing_array.h"
 #include "decalgl/core/error.h"
 #include "technique/decal_looks.h"
+#include "technique/dynamic_lines/line_edits.h"
 #include "technique/dynamic_lines/prepared_lines.h"
 
 namespace decalgl {
@@ -25,9 +26,9 @@ static_assert(sizeof(LineFileRecord) == 48, "saved as it is");
 
 void apply(const DecalLook& look, size_t feature, LineStyle& style) {
     if (!look.colors.empty())
-        std::memcpy(&style.color, look.color(feature), 4);
+        set_color(style, look.color(feature));
     if (!look.widths.empty())
-        style.half_width = static_cast<float>(0.5 * look.width(feature));
+        set_width(style, look.width(feature));
 }
 
 // Every line's vertices follow each other and name it, and its slot is there.
@@ -50,34 +51,44 @@ bool fit_together(const PreparedLines& lines) {
     return next == lines.vertices.size() && lines.styles.size() == lines.slots.size();
 }
 
+// Every style's pattern is in the table with all its marks.
+bool have_patterns(const PreparedLines& lines) {
+    return std::all_of(lines.styles.begin(), lines.styles.end(), [&](const LineStyle& style) {
+        if (style.pattern == NO_PATTERN)
+            return true;
+        if (style.pattern >= lines.patterns.size())
+            return false;
+        const PatternTexel& head = lines.patterns[style.pattern];
+        return head[0] >= 1.0F && head[0] <= static_cast<float>(most_pattern_marks) && head[3] > 0.0F &&
+               static_cast<size_t>(head[0]) < lines.patterns.size() - style.pattern;
+    });
+}
+
 }  // namespace
 
 LayerLook PreparedLines::look_of(uint32_t layer, size_t features) const {
     return layer_look(
-        slots, layer, features, [&](size_t i) { return reinterpret_cast<const uint8_t*>(&styles[i].color); },
-        [&](size_t i) { return 2.0 * static_cast<double>(styles[i].half_width); });
+        slots, layer, features,
+        [&](size_t i) { return reinterpret_cast<const uint8_t*>(&styles[i].own_color); },
+        [&](size_t i) { return width_of(styles[i]); });
 }
 
 std::shared_ptr<const Prepared> PreparedLines::restyled(Span<const LayerLook> looks,
                                                         const MemoryAccount& memory) const {
     auto result = std::make_shared<PreparedLines>(*this);
-    std::vector<LineStyle> changed(styles.begin(), styles.end());
-    for (const LayerLook& look : looks) {
+    for (const LayerLook& look : looks)
         if (!look.draw_order.empty())
-            throw Error(ErrorKind::unsupported,
-                        "technique 'dynamic' keeps its draw order; prepare the scene anew for another one");
-        for (size_t slot = 0; slot < slots.size(); ++slot)
-            if (slots[slot].feature.layer == look.layer && look.of(slots[slot].role) != nullptr)
-                apply(*look.of(slots[slot].role), slots[slot].feature.feature, changed[slot]);
-    }
+            result = reordered(*result, look.layer, look.draw_order, memory);
+    std::vector<LineStyle> changed(result->styles.begin(), result->styles.end());
+    for (const LayerLook& look : looks)
+        for (size_t slot = 0; slot < changed.size(); ++slot) {
+            const Decal& decal = result->slots[slot];
+            if (decal.feature.layer == look.layer && look.of(decal.role) != nullptr)
+                apply(*look.of(decal.role), decal.feature.feature, changed[slot]);
+        }
     result->styles = charged(SharedArray<LineStyle>(std::move(changed)), memory, "dynamic: prepared");
     result->summarise();
     return result;
-}
-
-std::shared_ptr<const Prepared> PreparedLines::edited(const LayerEdit&, const MemoryAccount&) const {
-    throw Error(ErrorKind::unsupported,
-                "technique 'dynamic' cannot edit its lines; prepare the scene anew with the new ones");
 }
 
 void PreparedLines::save(ArchiveWriter& archive, const std::string& prefix) const {
@@ -86,6 +97,7 @@ void PreparedLines::save(ArchiveWriter& archive, const std::string& prefix) cons
     archive.add(prefix + "lines", lines.span());
     archive.add(prefix + "styles", styles.span());
     archive.add(prefix + "slots", slots.span());
+    archive.add(prefix + "patterns", patterns.span());
 }
 
 std::unique_ptr<PreparedLines> open_lines(const ArchiveReader& archive, const std::string& prefix) {
@@ -100,13 +112,14 @@ std::unique_ptr<PreparedLines> open_lines(const ArchiveReader& archive, const st
     lines->lines = archive.array<LineRecord>(prefix + "lines");
     lines->styles = archive.array<LineStyle>(prefix + "styles");
     lines->slots = archive.array<Decal>(prefix + "slots");
+    lines->patterns = archive.array<PatternTexel>(prefix + "patterns");
     int exponent = 0;
     const bool is_lattice = std::isfinite(record.lattice.origin_x) &&
                             std::isfinite(record.lattice.origin_y) && std::isfinite(record.lattice.quantum) &&
                             std::frexp(record.lattice.quantum, &exponent) == 0.5;
     const bool is_known = record.method <= LineMethod::lists && record.width_rule <= LineWidthRule::thesis &&
                           record.cell >= 0.0 && std::isfinite(record.cell);
-    if (!is_lattice || !is_known || !fit_together(*lines))
+    if (!is_lattice || !is_known || !fit_together(*lines) || !have_patterns(*lines))
         archive.refuse("the dynamic lines do not fit together");
     lines->summarise();
     return lines;

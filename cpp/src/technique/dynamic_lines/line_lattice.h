@@ -6,6 +6,10 @@
 
 namespace decalgl {
 
+// Pixels that the ground under a line may be seen from where a pixel's plane has it (ground_reach.glsl), beyond what is asked
+// of the terrain's level of detail.
+constexpr double ground_slack = 0.25;
+
 constexpr int32_t lattice_reach = 1 << 30;  // places lie nearer to the origin
 
 struct LineLattice {

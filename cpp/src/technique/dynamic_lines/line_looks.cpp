@@ -6,6 +6,8 @@
 namespace decalgl {
 namespace {
 
+constexpr GLuint patterns_unit = 9;
+
 constexpr double radians = 3.14159265358979323846 / 180.0;
 
 // How much farther than half a line's width its corners and caps reach.
@@ -22,9 +24,11 @@ LineReach reach_of(const std::vector<LineStyle>& styles, bool with_joints) {
         const bool in_metres = (style.kind & IN_METRES) != 0;
         const float joints = with_joints ? reach_of_joints(style) : 1.0F;
         const float px =
-            std::min(std::max(in_metres ? 0.0F : style.half_width, style.least_px), style.most_px);
+            std::min(std::max(in_metres ? 0.0F : style.half_width, style.least_px), style.most_px) +
+            (in_metres ? 0.0F : style.margin);
         const float metres =
-            std::min(std::max(in_metres ? style.half_width : 0.0F, style.least_metres), style.most_metres);
+            std::min(std::max(in_metres ? style.half_width : 0.0F, style.least_metres), style.most_metres) +
+            (in_metres ? style.margin : 0.0F);
         reach.px = std::max(reach.px, joints * px);
         reach.metres = std::max(reach.metres, joints * metres);
     }
@@ -45,12 +49,20 @@ void LineLooks::upload(const PreparedLines& prepared, const PreparedLines* lens,
         summary_.has_hidden |= lens->summary.has_hidden;
         summary_.has_translucency |= lens->summary.has_translucency;
         summary_.is_joined |= lens->summary.is_joined;
+        summary_.is_styled |= lens->summary.is_styled;
+        summary_.has_sides |= lens->summary.has_sides;
         summary_.has_limits |= lens->summary.has_limits;
         summary_.has_one_look = false;
     }
     reach_ = reach_of(styles, summary_.is_joined);
     styles_ = gl::TextureBuffer();
     styles_ = gl::TextureBuffer::from(memory, "dynamic: styles", GL_RGBA32UI, styles);
+    patterns_ = gl::TextureBuffer();
+    if (summary_.is_styled) {
+        const std::vector<PatternTexel> patterns(prepared.patterns.begin(), prepared.patterns.end());
+        patterns_ = gl::TextureBuffer::from(memory, "dynamic: styles", GL_RGBA32F, patterns);
+    }
+    first_octave_ = first_octave(prepared.lattice);
 }
 
 void LineLooks::bind(gl::Program& program, GLuint unit) const {
@@ -58,6 +70,11 @@ void LineLooks::bind(gl::Program& program, GLuint unit) const {
     styles_.bind(unit);
     if (has_lens())
         program.set("lens_styles", lens_texels_);
+    if (summary_.is_styled) {
+        program.set("line_patterns", static_cast<int>(patterns_unit));
+        patterns_.bind(patterns_unit);
+        program.set("first_octave", first_octave_);
+    }
 }
 
 gl::Flags LineLooks::flags() const {
@@ -66,6 +83,8 @@ gl::Flags LineLooks::flags() const {
         flags.insert("JOINED");
     if (summary_.has_limits)
         flags.insert("LIMITS");
+    if (summary_.is_styled)
+        flags.insert("STYLED");
     if (has_lens())
         flags.insert("LENS");
     return flags;

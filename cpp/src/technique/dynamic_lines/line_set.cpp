@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <string>
+#include <vector>
 
 #include "decalgl/core/error.h"
 #include "decalgl/terrain/heightfield.h"
@@ -18,6 +19,8 @@ namespace decalgl {
 namespace {
 
 constexpr uint64_t most_matched = uint64_t{1} << 27;  // texels of a buffer that the drivers known address
+
+constexpr GLuint ground_unit = 10;  // that no program takes for something else
 
 struct MatchGrid {
     glm::dvec4 grid;
@@ -50,6 +53,16 @@ gl::TextureBuffer make_records(const MemoryAccount& memory, const std::string& n
                                      16 * std::max<uint64_t>(count, 1), data);
 }
 
+// Of each line the metres that 2^32 in `arc` stand for; empty where none has a pattern.
+std::vector<float> arc_lengths(const PreparedLines& prepared) {
+    std::vector<float> lengths;
+    if (!prepared.summary.is_styled)
+        return lengths;
+    for (const LineRecord& line : prepared.lines)
+        lengths.push_back(static_cast<float>(arc_length(prepared.styles[line.slot], prepared.patterns)));
+    return lengths;
+}
+
 void bind_source(gl::Program& program, const gl::TextureBuffer& vertices, const gl::TextureBuffer& lines) {
     program.set("source_vertices", 0);
     vertices.bind(0);
@@ -58,6 +71,16 @@ void bind_source(gl::Program& program, const gl::TextureBuffer& vertices, const 
 }
 
 }  // namespace
+
+void set_ground_slack(gl::Program& program, const View& view) {
+    program.set("ground_slack", static_cast<float>(ground_slack + view.terrain_error));
+}
+
+void bind_ground(gl::Program& program, const gl::Texture2D& heights, const View& view) {
+    program.set("ground_samples", static_cast<int>(ground_unit));
+    heights.bind(ground_unit);
+    set_ground_slack(program, view);
+}
 
 LatticeBase::LatticeBase(const LineLattice& lattice, const View& view)
     : quantum(static_cast<float>(lattice.quantum)) {
@@ -94,6 +117,7 @@ MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terra
     const auto source_count = static_cast<uint32_t>(prepared.vertices.size());
     MatchedLines matched;
     matched.lattice = prepared.lattice;
+    matched.ground = terrain.heights;
     matched.line_count = static_cast<uint32_t>(prepared.lines.size());
     const gl::TextureBuffer vertices = make_records(memory, "source", source_count, prepared.vertices.data());
     const gl::TextureBuffer lines = make_records(memory, "source", matched.line_count, prepared.lines.data());
@@ -114,15 +138,29 @@ MatchedLines match_lines(const PreparedLines& prepared, const TerrainView& terra
     matched.segment_count = matched.vertex_count - matched.line_count;
 
     matched.vertices = make_records(memory, "vertices", matched.vertex_count);
-    gl::Program& match = programs.get("dynamic_match");
+    const std::vector<float> lengths = arc_lengths(prepared);
+    gl::TextureBuffer length_of_lines;
+    if (!lengths.empty()) {
+        matched.arcs =
+            gl::TextureBuffer::create(memory, "dynamic: vertices", GL_R32UI,
+                                      sizeof(uint32_t) * std::max<size_t>(matched.vertex_count, 1));
+        length_of_lines = gl::TextureBuffer::from(memory, "dynamic: source", GL_R32F, lengths);
+    }
+    gl::Program& match = programs.get("dynamic_match", lengths.empty() ? gl::Flags{} : gl::Flags{"ARCS"});
     bind_source(match, vertices, lines);
     match.set("piece_offsets", 2);
     offsets.bind(2);
     match.set("heights", 3);
     terrain.heights->bind(3);
     match.set("stand_in_height", terrain.samples->lowest());
+    if (matched.arcs) {
+        match.set("arc_lengths", 4);
+        length_of_lines.bind(4);
+    }
     dispatch(match, matched.vertex_count, [&](uint32_t first, uint32_t items) {
         bind_records(0, matched.vertices.buffer(), sizeof(MatchedVertex), first, items);
+        if (matched.arcs)
+            bind_records(1, matched.arcs.buffer(), sizeof(uint32_t), first, items);
     });
 
     matched.lines = make_records(memory, "lines", matched.line_count);

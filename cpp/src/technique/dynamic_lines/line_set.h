@@ -10,6 +10,10 @@
 
 namespace decalgl {
 
+// The ground that lines are looked for on (ground_height.glsl): a texture and how far it may be seen off.
+void bind_ground(gl::Program& program, const gl::Texture2D& heights, const View& view);
+void set_ground_slack(gl::Program& program, const View& view);
+
 // Where the view's base lies on the lattice: uniforms `base_place`, `base_rest` and `quantum`.
 struct LatticeBase {
     ivec2 place{0};
@@ -24,8 +28,10 @@ struct LatticeBase {
 // What upload leaves, and no view changes.
 struct MatchedLines {
     LineLattice lattice;
-    gl::TextureBuffer vertices;  // MatchedVertex, RGBA32UI
-    gl::TextureBuffer lines;     // LineRecord, counted in matched vertices, RGBA32UI
+    gl::TextureBuffer vertices;             // MatchedVertex, RGBA32UI
+    gl::TextureBuffer lines;                // LineRecord, counted in matched vertices, RGBA32UI
+    gl::TextureBuffer arcs;                 // of each vertex, R32UI; none where no line has a pattern
+    const gl::Texture2D* ground = nullptr;  // samples of the terrain
     uint32_t vertex_count = 0;
     uint32_t line_count = 0;
     uint32_t segment_count = 0;  // of all lines together

@@ -139,6 +139,11 @@ void LineLists::fill_once(const View& view, const GBufferView& gbuffer, const Li
         program.set("lens_texture", 5);
         gbuffer.lens->bind(5);
     }
+    if (listed.lines->arcs) {
+        program.set("line_arcs", 6);
+        listed.lines->arcs.bind(6);
+    }
+    bind_ground(program, *listed.lines->ground, view);
     LatticeBase(listed.lines->lattice, view).set(program);
     const vec4 base = view.block->base_sample_fraction;
     program.set("ground_heights", (listed.ground_heights - base.z) - base.w);

@@ -1,6 +1,7 @@
 // Prepared dynamic lines: vertices, lines and styles as flat arrays, in draw order from bottom to top.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "technique/dynamic_lines/line_buffers.h"
 #include "technique/dynamic_lines/line_lattice.h"
 #include "technique/dynamic_lines/line_styles.h"
+#include "technique/dynamic_lines/line_writer.h"
+#include "technique/dynamic_lines/style_records.h"
 
 namespace decalgl {
 
@@ -20,9 +23,19 @@ struct LineSummary {
     bool has_hidden = false;
     bool has_translucency = false;
     bool has_one_look = true;  // of all that is shown
-    bool is_joined = false;    // some corner or cap is not round
+    bool is_joined = false;    // some corner or cap is not round, or has a place in a pattern
+    bool is_styled = false;    // patterns, or colours across
+    bool has_sides = false;    // inset or offset outlines
     bool has_limits = false;   // or metres
 };
+
+// What edits need to know of a layer: how many features it has had, and the records of a feature but for colours and widths.
+struct LineTemplate {
+    uint32_t features = 0;
+    std::vector<LineStyle> casing;
+    std::vector<LineStyle> stroke;
+};
+using LineTemplates = std::map<uint32_t, LineTemplate>;  // by layer
 
 class PreparedLines : public Prepared {
 public:
@@ -43,12 +56,16 @@ public:
     SharedArray<LineRecord> lines;
     SharedArray<LineStyle> styles;  // one a slot
     SharedArray<Decal> slots;
+    SharedArray<PatternTexel> patterns;
+    std::shared_ptr<const LineTemplates> templates;  // null where it was opened from a file
     LineMethod method = LineMethod::automatic;
     LineWidthRule width_rule = LineWidthRule::screen;
     double cell = 0.125;
     uint64_t segments = 0;
     LineSummary summary;
 };
+
+LinePurpose purpose_of(const LineStyle& style, uint32_t slot, Span<const PatternTexel> patterns);
 
 // Throws Error(memory), Error(unsupported), Error(cancelled).
 std::unique_ptr<PreparedLines> prepare_lines(const TechniqueInput& input, Progress& progress);

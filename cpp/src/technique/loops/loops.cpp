@@ -16,7 +16,7 @@
 namespace decalgl {
 namespace {
 
-using loops::eye_of;
+using loops::detail_eye_of;
 using loops::LoopsIndex;
 
 [[noreturn]] void refuse_files() {
@@ -91,8 +91,8 @@ void Loops::make_cells(const View& view) {
     const gl::PassTimer timer(view.timings, "loops: cells");
     const LoopsIndex& index = *prepared_->index();
     const LoopsDetail& detail = prepared_->detail();
-    CellsKey key{loops::Sight(view, index.lattice, index.heights), detail.has_eye ? detail.eye : detail_eye_of(view),
-                 detail, prepared_->slots()};
+    CellsKey key{loops::Sight(view, index.lattice, index.heights),
+                 detail.has_eye ? detail.eye : detail_eye_of(view), detail, prepared_->slots()};
     if (key_ && key_->sight == key.sight && same(key_->eye, key.eye) && key_->detail == detail &&
         key_->slots == key.slots)
         return;

@@ -1,6 +1,7 @@
 // What may be chosen, checked.
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <tuple>
 
@@ -76,6 +77,18 @@ bool LoopsChoice::equals(const TechniqueOptions& other) const {
     return choice != nullptr && !options.function && !choice->options.function &&
            options.order == choice->options.order && options.primitives == choice->options.primitives &&
            same(options.bvh, choice->options.bvh) && detail == choice->detail;
+}
+
+// A function is like no other one, not even in the next process.
+void LoopsChoice::write(ChoiceBytes& choices) const {
+    choices.add(std::make_tuple(options.order, options.primitives, options.bvh.has_value(), tied(detail)));
+    if (options.bvh)
+        choices.add(tied(*options.bvh));
+    for (const DetailStep& step : detail.steps)
+        choices.add(std::tie(step.distance, step.tolerance));
+    std::random_device random;
+    for (int i = 0; options.function && i < 4; ++i)
+        choices.add(random());
 }
 
 void validate(const LoopsOptions& options) {
