@@ -62,7 +62,7 @@ class Maps:
     """The scenes that factors are measured on: slices of height and isolines, whole or in parts."""
 
     def __init__(self, context: Context) -> None:
-        self.size = context.chosen((32, 18), (480, 270), context.picture)
+        self.size = context.chosen((32, 18), (320, 180), context.picture)
         self._map = build("floods", context.step)
 
     @functools.cached_property
@@ -212,7 +212,7 @@ def _dynamic(
     def way(method: Any) -> Callable[[Maps, Any], Case]:
         def case(maps: Maps, value: Any) -> Case:
             looks, camera, size = look(maps, value)
-            looks = {"width": 4.0, "width_units": "px", **looks, "technique": dg.Dynamic(method=method)}
+            looks = {"width": 2.0, "width_units": "px", **looks, "technique": dg.Dynamic(method=method)}
             return Case(_scene(maps, None, maps.lines, **looks), camera, size)
 
         return case
@@ -324,7 +324,7 @@ FACTORS = (
         "dynamic lines",
         "Figure 5.15",
         ("+", "", "+"),
-        (1.0, 4.0, 16.0),
+        (1.0, 2.0, 4.0, 8.0),
         _dynamic(lambda maps, width: ({"width": width}, maps.cameras["oblique"], maps.size)),
     ),
     Factor(

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import decalgl as dg
 
 from ..bench.measure import LAYER_PASSES, draw, drawing, interleaved, timed
+from ..errors import DecalError
 from . import plots
 from .factor_list import COLUMNS, FACTORS, REASONS, Maps
 from .part import Figure, Table
@@ -48,22 +49,29 @@ def rows(context: Context) -> list[Row]:
 
 
 def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]) -> list[Row]:
-    """Prepares and draws the cases in turns."""
-    renderers = {value: _prepared(case) for value, case in cases.items()}
+    """Prepares and draws the cases in turns; a row of one that is refused says so."""
+    words = {"factor": factor.name, "decals": factor.decals, "technique": way}
+    found: list[Row] = []
+    renderers = {}
+    ranks = {value: rank for rank, value in enumerate(cases)}
+    for value, case in list(cases.items()):
+        try:
+            renderers[value] = _prepared(case)
+            draw(renderers[value], case.camera, case.antialias)
+        except DecalError as error:
+            found.append({**words, "value": value, "refused": str(error)})
+            del cases[value]
     measures: list[Measure] = []
     for value, case in cases.items():
         measures.append(drawing(renderers[value], case.camera, case.antialias, value))
         measures.append(_preparing(case, value))
     times = interleaved(context.runs, *measures)
-    found = []
-    for rank, (value, case) in enumerate(cases.items()):
+    for value, case in cases.items():
         held = draw(renderers[value], case.camera, case.antialias).stats.bytes
         row: Row = {
-            "factor": factor.name,
-            "decals": factor.decals,
-            "technique": way,
+            **words,
             "value": value,
-            "rank": rank,
+            "rank": ranks[value],
             "memory_bytes": sum(count for name, count in held.items() if name in LAYER_PASSES),
             "render_ms": times[f"{value}_frame_ms"] - times[f"{value}_ground_ms"],
             "update_ms": times[f"{value}_prepare_ms"],
@@ -89,11 +97,19 @@ def _preparing(case: Case, value: str) -> Measure:
 
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """Table 5.4, the disagreements with their reasons, and a plot for each factor."""
+    every, rows = rows, [row for row in rows if "refused" not in row]
     found = [_signs_figure(rows), _reasons_figure(rows)]
     for factor in FACTORS:
         own = [row for row in rows if (row["factor"], row["decals"]) == (factor.name, factor.decals)]
         if own:
             found.append(_factor_figure(factor, own))
+    refused = [row for row in every if "refused" in row]
+    if refused:
+        cells = [
+            (row["factor"], row["decals"], row["technique"], row["value"], row["refused"]) for row in refused
+        ]
+        table = Table(("factor", "decals", "way", "value", "error"), cells)
+        found.append(Figure("Refused", "Values that a way does not draw.", table=table))
     return found
 
 
@@ -176,10 +192,7 @@ def _factor_figure(factor: Factor, rows: Sequence[Row]) -> Figure:
         for column, name in COLUMNS.items():
             if own and own[0][column] > 0.0:
                 series[f"{name}, {way}"] = [(row["rank"], row[column] / own[0][column]) for row in own]
-    labels = [
-        row["value"]
-        for row in sorted(_of(rows, factor, next(iter(factor.ways))), key=lambda row: row["rank"])
-    ]
+    labels = list(dict.fromkeys(row["value"] for row in sorted(rows, key=lambda row: row["rank"])))
     return Figure(
         f"{factor.figure}: {factor.name}, {factor.decals}",
         f"Relative to the first value. Values: {', '.join(labels)}.",
