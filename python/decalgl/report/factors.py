@@ -55,12 +55,12 @@ def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]
     renderers = {}
     ranks = {value: rank for rank, value in enumerate(cases)}
     for value, case in list(cases.items()):
-        try:
-            renderers[value] = _prepared(case)
-            draw(renderers[value], case.camera, case.antialias)
-        except DecalError as error:
-            found.append({**words, "value": value, "refused": str(error)})
+        prepared = _prepared(case)
+        if isinstance(prepared, str):
+            found.append({**words, "value": value, "refused": prepared})
             del cases[value]
+        else:
+            renderers[value] = prepared
     measures: list[Measure] = []
     for value, case in cases.items():
         measures.append(drawing(renderers[value], case.camera, case.antialias, value))
@@ -83,9 +83,14 @@ def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]
     return found
 
 
-def _prepared(case: Case) -> dg.Renderer:
-    renderer = dg.Renderer(case.size, **case.renderer)
-    renderer.preprocess(case.scene)
+def _prepared(case: Case) -> dg.Renderer | str:
+    """A renderer that has drawn the case, or what it says where it does not."""
+    try:
+        renderer = dg.Renderer(case.size, **case.renderer)
+        renderer.preprocess(case.scene)
+        draw(renderer, case.camera, case.antialias)
+    except DecalError as error:
+        return str(error)
     return renderer
 
 
