@@ -28,9 +28,11 @@ TITLE = "Influence factors"
 ABOUT = (
     "What grows with what, as in chapter 5 of Zechmeister 2020: + grows, – shrinks, ~ stays within the noise, empty:"
     " nothing changes. Published are the thesis's structures, built anew here; ours are the grid and the tiles. The"
-    " sign of a time counts from a change of a tenth and four times the spread on, that of memory from 5 % on."
+    " sign of a time counts from a change of a quarter, four times the spread, and 50 ms of preparing or 1 ms of"
+    " drawing on, that of memory from 5 % on."
 )
-NOISE, SPREADS = 0.1, 4.0
+NOISE, SPREADS = 0.25, 4.0
+LEAST_MS = {"update_ms": 50.0, "render_ms": 1.0}
 MEMORY_NOTHING, MEMORY_LITTLE = 0.002, 0.05
 
 
@@ -125,7 +127,9 @@ def sign(rows: Sequence[Row], column: str) -> str:
     if first <= 0.0 or last <= 0.0:
         return "" if first == last else "+"
     change = abs(math.log(last / first))
-    if column.endswith("_ms"):
+    if column in LEAST_MS:
+        if abs(last - first) < LEAST_MS[column]:
+            return "~"
         least = math.log1p(max(NOISE, SPREADS * max(row.get(f"{column}_spread", 0.0) for row in ranked)))
         return "~" if change <= least else "+" if last > first else "–"
     if change <= MEMORY_NOTHING:
