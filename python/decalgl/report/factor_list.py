@@ -52,11 +52,6 @@ class Factor:
         if not self.few:
             object.__setattr__(self, "few", (self.values[0], self.values[-1]))
 
-    @property
-    def values_text(self) -> str:
-        """Its first and last value."""
-        return f"{self.values[0]}, {self.values[-1]}"
-
 
 class Maps:
     """The scenes that factors are measured on: slices of height and isolines, whole or in parts."""

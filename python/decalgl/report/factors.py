@@ -172,7 +172,9 @@ def _signs_figure(rows: Sequence[Row]) -> Figure:
         blank = ["no such choice"] + [""] * 2
         published = signs[:3] if "published" in ours else blank
         own_signs = signs[-3:] if "ours" in ours else blank
-        cells.append((factor.decals, factor.name, factor.values_text, *factor.signs, *published, *own_signs))
+        values = [row["value"] for row in sorted(next(iter(ours.values())), key=lambda row: row["rank"])]
+        span = f"{values[0]}, {values[-1]}"
+        cells.append((factor.decals, factor.name, span, *factor.signs, *published, *own_signs))
     heads = [
         f"{who}: {name[0].upper()}" for who in ("thesis", "published", "ours") for name in COLUMNS.values()
     ]
