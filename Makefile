@@ -1,4 +1,4 @@
-# make demo | gallery | techniques | test | bench | lint | tidy | format | sanitize | clean
+# make demo | gallery | techniques | test | bench | report | lint | tidy | format | sanitize | clean
 #
 # Each target sets up what it needs and is quick the second time: the stamps in build/stamps say what is done.
 #
@@ -15,6 +15,8 @@ BIN := $(VENV)/bin
 STAMPS := build/stamps
 BUILD := build/release
 JOBS ?= $(shell nproc)
+# Of the report: quick or full.
+SIZE ?= quick
 # CI treats warnings as errors.
 WERROR := $(if $(CI),ON,OFF)
 
@@ -25,7 +27,7 @@ NATIVE_SOURCES = $(shell find cpp cmake python/bindings -type f 2>/dev/null) CMa
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 
-.PHONY: help setup build demo gallery techniques test bench lint tidy format sanitize wheel wheeltest clean distclean
+.PHONY: help setup build demo gallery techniques test bench report lint tidy format sanitize wheel wheeltest clean distclean
 
 help:  ## Show the targets
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -50,6 +52,9 @@ test: build  ## Run the C++ and Python tests
 
 bench: build  ## Measure speed and memory on real data
 	$(BIN)/decalgl bench
+
+report: build  ## Draw a report of error against run time into build/report (SIZE=full takes hours)
+	$(BIN)/decalgl report --out build/report --size $(SIZE)
 
 lint: setup  ## Check formatting, style and types
 	$(BIN)/ruff check .

@@ -1,7 +1,7 @@
 // The options of the technique "distance_field".
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "decalgl/technique/distance_field_options.h"
 #include "register.h"
 
@@ -9,14 +9,6 @@ namespace py = pybind11;
 
 namespace decalgl::bindings {
 namespace {
-
-template <typename T>
-using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
-
-template <typename T>
-std::vector<T> vector_of(const Array<T>& array) {
-    return std::vector<T>(array.data(), array.data() + array.size());
-}
 
 NetworkRaster make_raster(const Array<uint8_t>& texels) {
     if (texels.ndim() != 3 || texels.shape(2) != 4)

@@ -1,10 +1,10 @@
 // LOOPS: its options, its levels of detail, and features as they are at a tolerance.
 #include <pybind11/functional.h>
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 
+#include "arrays.h"
 #include "decalgl/core/error.h"
 #include "decalgl/technique/loops_options.h"
 #include "register.h"
@@ -14,14 +14,6 @@ namespace py = pybind11;
 
 namespace decalgl::bindings {
 namespace {
-
-template <typename T>
-using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
-
-template <typename T>
-py::array_t<T> array_of(Span<const T> values) {
-    return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
-}
 
 RemovalOrder order_named(const std::string& name) {
     for (const auto& [order, known] : {std::pair(RemovalOrder::douglas_peucker, "douglas_peucker"),
@@ -62,9 +54,6 @@ LoopsDetail::Shows shows_named(const std::string& name) {
 py::list simplified(bool polygons, const Array<double>& coordinates, const Array<int64_t>& part_offsets,
                     const Array<int64_t>& feature_offsets, const std::array<double, 4>& corners,
                     const std::vector<double>& tolerances, const LoopsChoice& choice) {
-    const auto vector_of = [](const auto& array) {
-        return std::vector(array.data(), array.data() + array.size());
-    };
     const FeatureKind kind = polygons ? FeatureKind::polygons : FeatureKind::lines;
     const Bounds bounds{corners[0], corners[1], corners[2], corners[3]};
     Layer layer;

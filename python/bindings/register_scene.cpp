@@ -1,9 +1,9 @@
 // Scenes: terrain and layers as NumPy arrays.
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 
+#include "arrays.h"
 #include "decalgl/core/error.h"
 #include "decalgl/frame/scene.h"
 #include "decalgl/technique/clipmap_options.h"
@@ -16,19 +16,6 @@ namespace py = pybind11;
 
 namespace decalgl::bindings {
 namespace {
-
-template <typename T>
-using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
-
-template <typename T>
-Span<const T> span_of(const Array<T>& array) {
-    return {array.data(), static_cast<size_t>(array.size())};
-}
-
-template <typename T>
-std::vector<T> vector_of(const Array<T>& array) {
-    return std::vector<T>(array.data(), array.data() + array.size());
-}
 
 struct FeatureArrays {
     Array<double> coordinates;

@@ -1,7 +1,7 @@
 // Strokes and fills: resolved styles as attributes and NumPy arrays.
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "decalgl/vector/layer.h"
 #include "decalgl/vector/layer_look.h"
 #include "register.h"
@@ -11,20 +11,12 @@ namespace py = pybind11;
 namespace decalgl::bindings {
 namespace {
 
-template <typename T>
-using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
-
 // A property of std::vector<T> that is written from an array.
 template <typename Owner, typename T>
 void def_array(py::class_<Owner>& owner, const char* name, std::vector<T> Owner::*member) {
     owner.def_property(
-        name,
-        [member](const Owner& self) {
-            return py::array_t<T>(py::ssize_t((self.*member).size()), (self.*member).data());
-        },
-        [member](Owner& self, const Array<T>& array) {
-            self.*member = std::vector<T>(array.data(), array.data() + array.size());
-        });
+        name, [member](const Owner& self) { return array_of(Span<const T>(self.*member)); },
+        [member](Owner& self, const Array<T>& array) { self.*member = vector_of(array); });
 }
 
 void register_stroke(py::module_& module) {

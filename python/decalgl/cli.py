@@ -180,13 +180,24 @@ def report(
     out: Annotated[Path, typer.Option(help="The folder to write: index.html, report.json, CSVs, pictures.")],
     size: Annotated[str, typer.Option(help="quick (some minutes, no network) or full (hours).")] = "quick",
     part: Annotated[Words, typer.Option(help="What to measure; may be repeated. All by default.")] = None,
+    step: Annotated[
+        Text,
+        typer.Option(help="Of the scenes: offline, small, medium or large. By default as fits the size."),
+    ] = None,
     redraw: Annotated[bool, typer.Option("--redraw", help="Only make the page of what is there.")] = False,
+    docs: Annotated[bool, typer.Option("--docs", help="Only take what is there over into the docs.")] = False,
 ) -> None:
     """Measure error against run time and more, and write a page with plots that opens offline."""
     from .report import command
 
-    page = command.write(out) if redraw else command.make(out, size, part or [])
-    messages.print(f"Wrote {page}", markup=False)
+    if not docs:
+        page = command.write(out) if redraw else command.make(out, size, part or [], step)
+        messages.print(f"Wrote {page}", markup=False)
+        return
+    from .report.docs import update
+
+    for path in update(out):
+        messages.print(f"Wrote {path}", markup=False)
 
 
 def parse_size(text: str) -> tuple[int, int]:

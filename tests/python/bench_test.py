@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
+import json
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 import shapely
 
 import decalgl as dg
+from decalgl import cli
 from decalgl.bench import command, comparison, goals, shapes, tables, terminal, workload
 from decalgl.bench.measure import interleaved
 from decalgl.bench.suites import SUITES
 from decalgl.errors import InputError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 # Of San Francisco bay, as the views are.
 WEST, NORTH, SPACING = -44_500.0, 55_600.0, 1112.0
@@ -118,3 +123,16 @@ def test_comparing_tells_changes_from_noise(
 def test_runs_without_anything_in_common_are_refused() -> None:
     with pytest.raises(InputError, match="in common"):
         comparison.compare({"records": []}, results(5.0, 10.0, 1000))
+
+
+def test_the_command_compares_two_files(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    before, after, other = (tmp_path / f"{name}.json" for name in ("before", "after", "other"))
+    before.write_text(json.dumps(results(5.0, 10.0, 1000)))
+    after.write_text(json.dumps(results(5.0, 20.0, 1000)))
+    other.write_text("[]")
+    assert cli.run(["bench", "--compare", str(before), str(before)]) == 0
+    assert cli.run(["bench", "--compare", str(before), str(after)]) == 1
+    assert "draw_ms" in capfd.readouterr().out
+    for wrong in (other, tmp_path / "absent.json"):
+        assert cli.run(["bench", "--compare", str(before), str(wrong)]) == 2
+        assert capfd.readouterr().err.startswith("error: ")

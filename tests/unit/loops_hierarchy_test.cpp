@@ -102,13 +102,13 @@ int sign(int64_t value) {
 
 // Whether two edges cross at a point inside both, or lie along each other in part.
 bool cross(const Edge& e, const Edge& f) {
-    const int a = sign(turn_of(e.a, e.b, f.a)), b = sign(turn_of(e.a, e.b, f.b));
-    const int c = sign(turn_of(f.a, f.b, e.a)), d = sign(turn_of(f.a, f.b, e.b));
+    const int a = sign(doubled_area(e.a, e.b, f.a)), b = sign(doubled_area(e.a, e.b, f.b));
+    const int c = sign(doubled_area(f.a, f.b, e.a)), d = sign(doubled_area(f.a, f.b, e.b));
     if (a * b < 0 && c * d < 0)
         return true;
     // An end of one inside the other.
     const auto inside = [](const Edge& edge, LatticePoint p) {
-        return p != edge.a && p != edge.b && turn_of(edge.a, edge.b, p) == 0 &&
+        return p != edge.a && p != edge.b && doubled_area(edge.a, edge.b, p) == 0 &&
                triangle_holds(edge.a, edge.b, edge.b, p);
     };
     return inside(e, f.a) || inside(e, f.b) || inside(f, e.a) || inside(f, e.b);

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     Points = NDArray[np.float64]
     Bounds = tuple[float, float, float, float]
+    Point = tuple[float, float, float]
 
 FOV = 45.0
 ASPECT = 16.0 / 9.0
@@ -50,6 +51,47 @@ def interior(ground: dg.Terrain, points: Points) -> dg.Camera:
     """Onto the place that is farthest from all vertices, holes and rims, and none of them in the picture."""
     x, y, room = _emptiest(ground, points)
     return _showing(on_ground(ground, x, y), min(WORST_WIDTH, room / 2.0), elevation=45)
+
+
+def zoom(target: Point, far: float, close: float, steps: int) -> list[dg.Camera]:
+    """From far away to close to a place, each step nearer by the same factor (Zechmeister 2020, figure 5.8)."""
+    distances = far * (close / far) ** np.linspace(0.0, 1.0, steps)
+    return [dg.Camera.orbit(target, float(distance), 200, 45) for distance in distances]
+
+
+def flight(bounds: Bounds, steps: int) -> list[dg.Camera]:
+    """The four phases of LOOPS's section 6.4: zooming in, along at one height, looking around, through a valley."""
+    x0, y0, x1, y1 = bounds
+    wide, middle = x1 - x0, np.array([(x0 + x1) / 2, (y0 + y1) / 2])
+    path = []
+    for t in (np.arange(steps) + 0.5) / steps:
+        part = 4.0 * t % 1.0
+        if t < 0.25:
+            path.append(dg.Camera.orbit((*middle, 0.0), wide * 1.5 * 0.05**part, 200, 45))
+        elif t < 0.5:
+            x, y = middle[0] + wide * 0.4 * (part - 0.5), middle[1]
+            path.append(dg.Camera.orbit((x, y, 0.0), wide * 0.075, 200, 45))
+        elif t < 0.75:
+            eye = (*middle, wide * 0.05)
+            angle = 2.0 * np.pi * part
+            target = (middle[0] + wide * np.sin(angle), middle[1] + wide * np.cos(angle), -0.25 * wide)
+            path.append(dg.Camera.look_at(eye, target))
+        else:
+            x, y = middle + wide * 0.2 * part
+            path.append(dg.Camera.orbit((x, y, 0.0), wide * 0.03, 45, 20))
+    return path
+
+
+def flyover(ground: dg.Terrain, steps: int) -> list[dg.Camera]:
+    """From the south-west to the north-east low over the ground, looking ahead and down (as Thöny 2018 flies)."""
+    x0, y0, x1, y1 = ground.bounds
+    wide, high = x1 - x0, y1 - y0
+    path = []
+    for t in np.linspace(0.1, 0.75, steps):
+        x, y, z = on_ground(ground, x0 + t * wide, y0 + t * high)
+        ahead = on_ground(ground, x0 + (t + 0.12) * wide, y0 + (t + 0.12) * high)
+        path.append(dg.Camera.look_at((x, y, max(z, ahead[2]) + 0.04 * wide), ahead))
+    return path
 
 
 def _showing(target: tuple[float, float, float], width: float, elevation: float) -> dg.Camera:

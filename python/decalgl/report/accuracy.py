@@ -99,7 +99,7 @@ class Judge:
 
     def _true(self, view: str, pixels: bool) -> Overlay:
         if (view, pixels) not in self._truth:
-            scene = self._map.scene(pixels=pixels)
+            scene = self._map.scene("auto", "auto", pixels)
             camera = self._cameras[view]
             near = seen_part(scene, camera, self._size, self.crop)
             self._truth[view, pixels] = reference.render_overlay(near, camera, self._size, self.crop, SAMPLES)
@@ -150,7 +150,7 @@ def _cut(layer: dg.Layer, low: FloatArray, high: FloatArray) -> dg.Layer:
     least, most = np.full((len(table), 2), np.inf), np.full((len(table), 2), -np.inf)
     np.minimum.at(least, owner, table.coords)
     np.maximum.at(most, owner, table.coords)
-    keep = ((least <= high) & (most >= low)).all(axis=1)
+    keep = np.asarray(((least <= high) & (most >= low)).all(axis=1), np.bool_)
     places = np.cumsum(keep) - 1
     order = layer.draw_order[keep[layer.draw_order]]
     return replace(

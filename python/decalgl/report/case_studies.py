@@ -19,7 +19,7 @@ from __future__ import annotations
 import functools
 import itertools
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -35,7 +35,8 @@ if TYPE_CHECKING:
 
     import geopandas as gpd
 
-Step: TypeAlias = Literal["tiny", "offline", "small", "medium", "large"]
+    from .part import Size, Step
+
 # Samples along a side of what is cut out of the terrain model, and of the town, how many copies along a side.
 WINDOWS: dict[Step, int] = {"tiny": 60, "offline": 300, "small": 800, "medium": 1800, "large": 3500}
 COPIES: dict[Step, int] = {"tiny": 1, "offline": 1, "small": 2, "medium": 8, "large": 24}
@@ -129,7 +130,8 @@ def _jacksboro() -> dg.Terrain:
     from affine import Affine
     from matplotlib.cbook import get_sample_data
 
-    with get_sample_data("jacksboro_fault_dem.npz") as stored:
+    opened: Any = get_sample_data("jacksboro_fault_dem.npz")
+    with opened as stored:
         z = np.asarray(stored["elevation"], np.float32)
         step, west = float(stored["dx"]), float(stored["xmin"])
         north = max(float(stored["ymin"]), float(stored["ymax"]))
@@ -336,4 +338,10 @@ CASE_STUDIES = {
     ),
     "floods": CaseStudy("HORA FA", "derived: what lies lower than the ground around it", _floods),
     "catchments": CaseStudy("HORA RC", "derived: catchments of 20 samples", _catchments),
+}
+# What a report of each size is made of.
+SCENES: dict[Size, tuple[str, ...]] = {
+    "tiny": ("floods",),
+    "quick": ("floods", "rural"),
+    "full": tuple(CASE_STUDIES),
 }

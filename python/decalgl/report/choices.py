@@ -65,4 +65,4 @@ def _everywhere(rows: Sequence[Row]) -> list[list[Row]]:
 
 
 def _of(rows: Sequence[Row], name: str) -> float:
-    return statistics.median(row[name] for row in rows)
+    return float(statistics.median(row[name] for row in rows))

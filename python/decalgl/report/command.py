@@ -12,7 +12,7 @@ from rich.console import Console
 from .. import errors
 from ..bench import comparison, folders, measure
 from .page import Section, page
-from .part import SIZES, Context, Row, Size
+from .part import SIZES, STEPS, Context, Row, Size, Step
 from .parts import PARTS
 
 if TYPE_CHECKING:
@@ -24,21 +24,28 @@ NOTE = (
     "Every figure comes from the rows in report.json. Times are medians of rounds in which all that is compared takes"
     " turns; errors are those against decalgl.reference, and the same on every run."
 )
-PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (640, 360), "full": (1280, 720)}
+STEPS_KNOWN = ("tiny", "offline", "small", "medium", "large")
+PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (480, 270), "full": (1280, 720)}
 CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 9), "quick": (80, 45), "full": (320, 180)}
 RUNS: dict[Size, int] = {"tiny": 1, "quick": 3, "full": 5}
 
 
-def make(out: Path, size: str, names: Sequence[str] = (), say: Any = None) -> Path:
-    """Measures the parts of these names, all where none is given, and writes the page. Raises DecalError."""
+def make(out: Path, size: str, names: Sequence[str] = (), step: str | None = None, say: Any = None) -> Path:
+    """Measures the parts of these names, all where none is given, and writes the page. Raises DecalError.
+
+    step: of the case studies, by default as fits the size.
+    """
     if size not in SIZES:
         raise errors.InputError(f"There is no --size {size!r}. Choose from {', '.join(SIZES)}.")
+    if step is not None and step not in STEPS_KNOWN:
+        raise errors.InputError(f"There is no --step {step!r}. Choose from {', '.join(STEPS_KNOWN)}.")
     unknown = [name for name in names if name not in PARTS]
     if unknown:
         raise errors.InputError(f"There is no --part {unknown[0]!r}. Choose from {', '.join(PARTS)}.")
-    chosen = cast("Size", size)
+    chosen: Size = size
     context = Context(
         size=chosen,
+        step=cast("Step", step) if step else STEPS[chosen],
         out=out,
         data=folders.data(),
         picture=PICTURE[chosen],
@@ -56,7 +63,13 @@ def make(out: Path, size: str, names: Sequence[str] = (), say: Any = None) -> Pa
         context.say(f"[bold]{name}[/]")
         records += [{"part": name, **row} for row in PARTS[name].rows(context)]
         context.say(f"{time.monotonic() - started:.0f} s")
-    results = {"machine": measure.machine(), "runs": context.runs, "size": size, "records": records}
+    results = {
+        "machine": measure.machine(),
+        "runs": context.runs,
+        "size": size,
+        "step": context.step,
+        "records": records,
+    }
     (out / "report.json").write_text(json.dumps(results, indent=1) + "\n")
     return write(out)
 

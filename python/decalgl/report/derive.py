@@ -41,8 +41,10 @@ def bands(ground: dg.Terrain, levels: Iterable[tuple[float, float]]) -> tuple[dg
     heights: list[float] = []
     for low, high in levels:
         pieces, offsets = generator.filled(low, high)
-        polygons += [np.split(points, ends[1:-1]) for points, ends in zip(pieces, offsets, strict=True)]
-        heights += [high] * len(pieces)
+        found = [np.split(points, ends[1:-1]) for points, ends in zip(pieces, offsets, strict=True)]
+        found = [[ring for ring in rings if _is_area(ring)] for rings in found if _is_area(rings[0])]
+        polygons += found
+        heights += [high] * len(found)
     return table("polygons", polygons), np.asarray(heights)
 
 
@@ -115,6 +117,13 @@ def chosen(features: dg.FeatureTable, keep: NDArray[np.bool_]) -> dg.FeatureTabl
     )
 
 
+def without_holes(features: dg.FeatureTable) -> dg.FeatureTable:
+    """Polygons of their first rings alone."""
+    first = features.feature_offsets[:-1]
+    rings = [[features.coords[features.part_offsets[at] : features.part_offsets[at + 1]]] for at in first]
+    return table("polygons", rings)
+
+
 def repeated(features: dg.FeatureTable, steps: FloatArray) -> dg.FeatureTable:
     """The features once for each of the steps (n, 2) in metres."""
     count = len(steps)
@@ -144,6 +153,11 @@ def _contours(ground: dg.Terrain) -> Any:
         line_type=contourpy.LineType.Separate,
         fill_type=contourpy.FillType.OuterOffset,
     )
+
+
+def _is_area(ring: FloatArray) -> bool:
+    """Whether a ring has three distinct points; contours touch single samples."""
+    return len(ring) > 6 or len(np.unique(ring, axis=0)) > 2
 
 
 def _traced(ground: dg.Terrain, labels: NDArray[Any]) -> list[list[FloatArray]]:

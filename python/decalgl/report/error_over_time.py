@@ -11,14 +11,14 @@ from ..bench.measure import LAYER_PASSES, drawing, floor, interleaved, timed
 from ..errors import DecalError
 from . import choices, plots, views
 from .accuracy import Judge
-from .case_studies import CASE_STUDIES, build
+from .case_studies import SCENES, build
 from .part import Figure, Table, byte_count, number
 from .settings import settings
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from .case_studies import Map, Step
+    from .case_studies import Map
     from .part import Context, Row
     from .settings import Setting
 
@@ -32,8 +32,6 @@ ABOUT = (
     " lines leave polygons to static, and are left out where there are no lines."
 )
 TOGETHER = 6  # renderers that are held at once
-SCENES = {"tiny": ("floods",), "quick": ("isolines", "rural", "floods"), "full": tuple(CASE_STUDIES)}
-STEPS: dict[str, Step] = {"tiny": "tiny", "quick": "offline", "full": "small"}
 
 
 def rows(context: Context) -> list[Row]:
@@ -41,7 +39,7 @@ def rows(context: Context) -> list[Row]:
     found: list[Row] = []
     for name in SCENES[context.size]:
         try:
-            drawn = build(name, STEPS[context.size])
+            drawn = build(name, context.step)
         except DecalError as error:
             found.append({"scene": name, "refused": str(error)})
             continue
@@ -140,7 +138,7 @@ def _held(renderer: dg.Renderer, camera: dg.Camera, setting: Setting) -> int:
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """Plots over all scenes and for each, and tables."""
     drawn = [row for row in rows if "frame" in row]
-    found = [_over_all(drawn), choices.figure(drawn)]
+    found = [over_all(drawn), choices.figure(drawn), *_approaches(drawn)]
     for scene in dict.fromkeys(row["scene"] for row in drawn):
         own = [row for row in drawn if row["scene"] == scene]
         found.append(_time_plot(scene, own))
@@ -157,7 +155,7 @@ def figures(rows: Sequence[Row]) -> list[Figure]:
     return found
 
 
-def _over_all(rows: Sequence[Row]) -> Figure:
+def over_all(rows: Sequence[Row]) -> Figure:
     """One point a setting: medians over scenes and views."""
     points = []
     for group, setting in dict.fromkeys((row["technique"], row["setting"]) for row in rows):
@@ -171,6 +169,33 @@ def _over_all(rows: Sequence[Row]) -> Figure:
         " both time and error.",
         plots.scatter(points, "frame ÷ floor", "error at borders (rms, of 1)"),
     )
+
+
+def _approaches(rows: Sequence[Row]) -> list[Figure]:
+    """Zechmeister 2020, figure 5.5: volumes, static decals and dynamic lines, scene by scene, without anti-aliasing."""
+    plain = [row for row in rows if row["setting"] in ("none", "tiles, none", "lists, none")]
+    columns = {
+        "memory": ("layers_bytes", 1e6, "MB"),
+        "update": ("prepare_ms", 1.0, "ms"),
+        "render": ("layers", 1.0, "÷ floor"),
+    }
+    found = []
+    for name, (column, unit, label) in columns.items():
+        groups = {}
+        for scene in dict.fromkeys(row["scene"] for row in plain):
+            ways: dict[str, list[float]] = {}
+            for row in plain:
+                if row["scene"] == scene:
+                    way = (
+                        row["technique"]
+                        if row["setting"] == "none"
+                        else f"dynamic {row['setting'].split(',')[0]}"
+                    )
+                    ways.setdefault(way, []).append(row[column] / unit)
+            groups[scene] = {way: statistics.median(values) for way, values in ways.items()}
+        caption = "Shadow volumes, static decals by our index and by the thesis's, dynamic lines by tiles and by lists."
+        found.append(Figure(f"Figure 5.5: approaches, {name}", caption, plots.bars(groups, label, log="y")))
+    return found
 
 
 def _time_plot(scene: str, rows: Sequence[Row]) -> Figure:

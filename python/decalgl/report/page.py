@@ -25,6 +25,7 @@ body { margin: 0; color: var(--ink); background: var(--paper); font: 16px/1.5 sy
 header, main, nav { max-width: 72rem; margin: 0 auto; padding: 0 1.25rem; }
 header { padding-top: 2rem; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .5rem; }
+section { scroll-margin-top: 2.5rem; }
 h2 { font-size: 1.45rem; margin: 3rem 0 .5rem; padding-top: .75rem; border-top: 2px solid var(--line); }
 h3 { font-size: 1.08rem; margin: 2rem 0 .25rem; }
 p { max-width: 46rem; margin: .4rem 0 .8rem; }
@@ -34,7 +35,7 @@ nav { position: sticky; top: 0; background: var(--paper); border-bottom: 1px sol
       white-space: nowrap; overflow-x: auto; padding-top: .5rem; padding-bottom: .5rem; }
 nav a { margin-right: 1.25rem; text-decoration: none; }
 .wide { overflow-x: auto; }
-.plot svg { display: block; width: 100%; min-width: 33rem; max-width: 56rem; height: auto; }
+.plot svg { display: block; width: 100%; min-width: 30rem; max-width: 56rem; height: auto; }
 .plot img { max-width: 100%; }
 table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .3rem .7rem; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Row: TypeAlias = dict[str, Any]
 Size: TypeAlias = Literal["tiny", "quick", "full"]
 SIZES: tuple[Size, ...] = ("tiny", "quick", "full")
+Step: TypeAlias = Literal["tiny", "offline", "small", "medium", "large"]
+STEPS: dict[Size, Step] = {"tiny": "tiny", "quick": "offline", "full": "small"}
 PICTURES = "pictures"
 
 
@@ -31,6 +33,7 @@ class Context:
     """What a part is measured with.
 
     size: how much to measure: "tiny" for tests, "quick" for CI (half a minute a part, no network), "full".
+    step: how large the case studies are.
     out: the folder of the page; pictures go into a folder there.
     data: where data is kept that was fetched or derived.
     picture: (width, height) of the pictures whose times are taken. crop: that of what is compared with the
@@ -45,6 +48,7 @@ class Context:
     picture: tuple[int, int]
     crop: tuple[int, int]
     runs: int
+    step: Step = "offline"
     say: Callable[[str], None] = print
 
     def chosen(self, tiny: Any, quick: Any, full: Any) -> Any:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import error_over_time
+from . import error_over_time, factors, papers, scenes
 
 if TYPE_CHECKING:
     from .part import Part
 
 PARTS: dict[str, Part] = {
+    "scenes": scenes,
     "error_over_time": error_over_time,
+    "factors": factors,
+    "papers": papers,
 }

@@ -41,7 +41,7 @@ OTHERS = (
 )
 MARKERS = "osD^vPX*<>"
 INK, GRID = "#2b2f33", "#dfe3e6"
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "svg.hashsalt": "decalgl",
     "svg.fonttype": "none",
     "font.family": "sans-serif",
@@ -89,12 +89,13 @@ def svg(figure: Figure) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     text = io.StringIO()
+    canvas: Any = FigureCanvasSVG(figure)
     with mpl.rc_context(STYLE):
-        FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None, "Creator": None})
+        canvas.print_svg(text, metadata={"Date": None, "Creator": None})
     drawn = PROLOGUE.sub("", text.getvalue())
     head, rest = drawn.split(">", 1)
     head = re.sub(r' (width|height)="[^"]*"', "", head)
-    return f"{head}>{rest}"
+    return f"{head}>{rest}".rstrip() + "\n"
 
 
 def scatter(
@@ -141,7 +142,7 @@ def scatter(
                 zorder=4,
             )
     _finish(axes, x_label, y_label, log)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    _explain(figure)
     return svg(figure)
 
 
@@ -151,16 +152,25 @@ def curves(
     y_label: str,
     log: str = "xy",
     marks: bool = True,
+    ticks: Sequence[str] = (),
 ) -> str:
-    """A line for each series of (x, y), as SVG."""
+    """A line for each series of (x, y), as SVG. ticks: what stands at x = 0, 1, 2 ..."""
+    from matplotlib.ticker import MaxNLocator
+
     figure, axes = new()
+    whole = True
     for place, (name, line) in enumerate(series.items()):
         color, marker = look(name, place)
         xs, ys = zip(*line, strict=True)
+        whole = whole and all(isinstance(x, int) for x in xs)
         axes.plot(xs, ys, color=color, marker=marker if marks else None, ms=5, lw=1.6, label=name)
     _finish(axes, x_label, y_label, log)
+    if ticks:
+        axes.set_xticks(range(len(ticks)), list(ticks))
+    elif whole and "x" not in log:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     if len(series) > 1:
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        _explain(figure)
     return svg(figure)
 
 
@@ -186,7 +196,7 @@ def bars(groups: Mapping[str, Mapping[str, float]], y_label: str, log: str = "")
         ha="right" if len(groups) > 4 else "center",
     )
     if len(names) > 1:
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        _explain(figure)
     return svg(figure)
 
 
@@ -202,6 +212,14 @@ def pareto(points: Iterable[Point]) -> list[Point]:
 def look(name: str, place: int = 0) -> tuple[str, str]:
     """Colour and marker of a technique, or of the place in a row of other names."""
     return LOOKS.get(name, (OTHERS[place % len(OTHERS)], MARKERS[place % len(MARKERS)]))
+
+
+def _explain(figure: Figure) -> None:
+    """A legend below the plot, where there is room on narrow windows too."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(STYLE):
+        figure.legend(loc="outside lower center", ncols=4)
 
 
 def _finish(axes: Axes, x_label: str, y_label: str, log: str) -> None:

@@ -53,9 +53,7 @@ def _static() -> Iterator[Setting]:
     yield Setting("static", "fxaa", "fxaa", quick=True)
     yield Setting("static", "msaa 4", "msaa", renderer={"samples": 4}, quick=True)
     for samples in (2, 4, 8, 16):
-        yield Setting(
-            "static", f"ssaa {samples}", "ssaa", renderer={"samples": samples}, quick=samples in (4, 16)
-        )
+        yield Setting("static", f"ssaa {samples}", "ssaa", renderer={"samples": samples}, quick=samples == 4)
 
 
 def _published() -> Iterator[Setting]:
@@ -85,20 +83,21 @@ def _dynamic() -> Iterator[Setting]:
         ("lists, none", dg.Dynamic(method="lists"), "none"),
         ("lists, fxaa", dg.Dynamic(method="lists"), "fxaa"),
     ):
-        quick = name in ("tiles, none", "tiles, coverage", "lists, fxaa")
-        yield Setting("dynamic", name, antialias, lines=technique, pixels=True, quick=quick)
+        quick = name in ("tiles, none", "tiles, coverage", "lists, none")
+        yield Setting("dynamic", name, antialias, "auto", technique, pixels=True, quick=quick)
 
 
 def _loops() -> Iterator[Setting]:
     for error in (0.25, 0.5, 1.0, 2.0, 4.0):
         technique = dg.Loops(detail=dg.Detail(screen=error))
-        yield Setting(
-            "loops", f"{error:g} px", polygons=technique, lines=technique, quick=error in (0.5, 2.0)
-        )
+        yield Setting("loops", f"{error:g} px", polygons=technique, lines=technique)
     full = dg.Loops(detail=dg.Detail(screen=None, uniform=0.0))
     yield Setting("loops", "all details", polygons=full, lines=full)
-    half = dg.Loops()
-    yield Setting("loops", "0.5 px, none", "none", polygons=half, lines=half, quick=True)
+    for error in (0.5, 2.0):
+        technique = dg.Loops(detail=dg.Detail(screen=error))
+        for mode in ("none", "fxaa"):
+            quick = error == 0.5
+            yield Setting("loops", f"{error:g} px, {mode}", mode, technique, technique, quick=quick)
 
 
 def _volume() -> Iterator[Setting]:

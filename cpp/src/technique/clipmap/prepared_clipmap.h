@@ -11,6 +11,7 @@
 #include <array>
 #include <vector>
 
+#include "core/lattice_points.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/technique/clipmap_options.h"
 #include "decalgl/technique/technique.h"
@@ -18,12 +19,7 @@
 
 namespace decalgl::clipmap {
 
-struct LatticeBox {
-    int32_t min_x = INT32_MAX;
-    int32_t min_y = INT32_MAX;
-    int32_t max_x = INT32_MIN;
-    int32_t max_y = INT32_MIN;
-};
+using lattice::LatticeBox;
 
 struct PlacedVertex {
     int32_t x;

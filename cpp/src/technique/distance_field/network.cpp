@@ -6,11 +6,14 @@
 #include <string>
 #include <unordered_map>
 
+#include "core/lattice_points.h"
 #include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
 
 namespace decalgl::network {
 namespace {
+
+using lattice::LatticePoint;
 
 // Pieces of long segments have lower boxes: so many samples of terrain at most.
 constexpr double longest_piece = 64.0;
@@ -18,11 +21,6 @@ constexpr uint64_t most_nodes = uint64_t{1} << 27;  // what drivers read from on
 
 struct Point {
     double x, y;
-};
-
-struct LatticePoint {
-    int32_t x, y;
-    bool operator==(const LatticePoint& other) const { return x == other.x && y == other.y; }
 };
 
 struct LatticeHash {

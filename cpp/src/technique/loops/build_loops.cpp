@@ -63,8 +63,8 @@ public:
         const Refinement& refinement = hierarchy_.refinement;
         for (const uint32_t arc : arcs.fill_of(feature))
             for (uint32_t p = arcs.begin(arc) + 1; p + 1 < arcs.end(arc); ++p)
-                if (turn_of(arcs.points[refinement.left[p]], arcs.points[p],
-                            arcs.points[refinement.right[p]]) != 0)
+                if (doubled_area(arcs.points[refinement.left[p]], arcs.points[p],
+                                 arcs.points[refinement.right[p]]) != 0)
                     items.push_back({slot, p});
     }
 

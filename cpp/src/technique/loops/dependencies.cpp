@@ -16,12 +16,13 @@ constexpr uint64_t looks_per_arc = 1 << 16;
 
 // Whether the triangle may reach into a box: not where the box lies beyond one of its sides.
 bool may_meet(LatticePoint a, LatticePoint b, LatticePoint c, const LatticeBox& box) {
-    if (turn_of(a, b, c) < 0)
+    if (doubled_area(a, b, c) < 0)
         std::swap(b, c);
     const auto is_beyond = [&](LatticePoint from, LatticePoint to) {
-        return turn_of(from, to, {box.min_x, box.min_y}) < 0 &&
-               turn_of(from, to, {box.max_x, box.min_y}) < 0 &&
-               turn_of(from, to, {box.min_x, box.max_y}) < 0 && turn_of(from, to, {box.max_x, box.max_y}) < 0;
+        return doubled_area(from, to, {box.min_x, box.min_y}) < 0 &&
+               doubled_area(from, to, {box.max_x, box.min_y}) < 0 &&
+               doubled_area(from, to, {box.min_x, box.max_y}) < 0 &&
+               doubled_area(from, to, {box.max_x, box.max_y}) < 0;
     };
     return !is_beyond(a, b) && !is_beyond(b, c) && !is_beyond(c, a);
 }

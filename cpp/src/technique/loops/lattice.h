@@ -13,63 +13,26 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/lattice_points.h"
 #include "decalgl/core/position_grid.h"
 
 namespace decalgl::loops {
 
-struct LatticePoint {
-    int32_t x;
-    int32_t y;
-};
-
-inline bool operator==(LatticePoint a, LatticePoint b) {
-    return a.x == b.x && a.y == b.y;
-}
-inline bool operator!=(LatticePoint a, LatticePoint b) {
-    return !(a == b);
-}
+using lattice::doubled_area;
+using lattice::LatticeBox;
+using lattice::LatticePoint;
 
 constexpr int lattice_bits = 30;
 constexpr double lattice_extent = 1 << lattice_bits;
-
-// Twice the signed area of a, b, c: above 0 where they turn left. Exact.
-inline int64_t turn_of(LatticePoint a, LatticePoint b, LatticePoint c) {
-    return (int64_t{b.x} - a.x) * (int64_t{c.y} - a.y) - (int64_t{b.y} - a.y) * (int64_t{c.x} - a.x);
-}
 
 // Whether the closed triangle holds p; one without area is the segments between its corners.
 inline bool triangle_holds(LatticePoint a, LatticePoint b, LatticePoint c, LatticePoint p) {
     if (p.x < std::min({a.x, b.x, c.x}) || p.x > std::max({a.x, b.x, c.x}) ||
         p.y < std::min({a.y, b.y, c.y}) || p.y > std::max({a.y, b.y, c.y}))
         return false;
-    const int64_t ab = turn_of(a, b, p), bc = turn_of(b, c, p), ca = turn_of(c, a, p);
+    const int64_t ab = doubled_area(a, b, p), bc = doubled_area(b, c, p), ca = doubled_area(c, a, p);
     return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
-
-// Holds its border; empty where a minimum is above its maximum.
-struct LatticeBox {
-    int32_t min_x = INT32_MAX;
-    int32_t min_y = INT32_MAX;
-    int32_t max_x = INT32_MIN;
-    int32_t max_y = INT32_MIN;
-
-    void add(LatticePoint p) {
-        min_x = std::min(min_x, p.x);
-        min_y = std::min(min_y, p.y);
-        max_x = std::max(max_x, p.x);
-        max_y = std::max(max_y, p.y);
-    }
-    void add(const LatticeBox& box) {
-        min_x = std::min(min_x, box.min_x);
-        min_y = std::min(min_y, box.min_y);
-        max_x = std::max(max_x, box.max_x);
-        max_y = std::max(max_y, box.max_y);
-    }
-    bool meets(const LatticeBox& box) const {
-        return min_x <= box.max_x && box.min_x <= max_x && min_y <= box.max_y && box.min_y <= max_y;
-    }
-    bool holds(LatticePoint p) const { return min_x <= p.x && p.x <= max_x && min_y <= p.y && p.y <= max_y; }
-};
 
 inline LatticeBox box_of(LatticePoint a, LatticePoint b, LatticePoint c) {
     LatticeBox box;

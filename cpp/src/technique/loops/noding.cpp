@@ -15,7 +15,7 @@ using Passed = std::vector<std::pair<int64_t, uint32_t>>;  // how far along the 
 // Whether the edge from a to b may come near a box: else both its sides lie beyond.
 bool comes_near(LatticePoint a, LatticePoint b, const LatticeBox& box) {
     const int64_t slack = nearness * std::max(std::abs(int64_t{b.x} - a.x), std::abs(int64_t{b.y} - a.y));
-    const auto beside = [&](int32_t x, int32_t y) { return turn_of(a, b, {x, y}); };
+    const auto beside = [&](int32_t x, int32_t y) { return doubled_area(a, b, {x, y}); };
     const int64_t values[] = {beside(box.min_x, box.min_y), beside(box.max_x, box.min_y),
                               beside(box.min_x, box.max_y), beside(box.max_x, box.max_y)};
     return *std::min_element(values, values + 4) <= slack && *std::max_element(values, values + 4) >= -slack;
@@ -37,7 +37,7 @@ void find_passed(const Locations& locations, uint32_t from, uint32_t to, Passed&
             const LatticePoint p = locations.place(location);
             const int64_t along = (int64_t{p.x} - a.x) * dx + (int64_t{p.y} - a.y) * dy;
             if (location != from && location != to && along > 0 && along < length2 &&
-                std::abs(turn_of(a, b, p)) <= slack)
+                std::abs(doubled_area(a, b, p)) <= slack)
                 passed.emplace_back(along, location);
             return true;
         });

@@ -99,7 +99,7 @@ private:
             return false;
         if (a.y > b.y)
             std::swap(a, b);
-        return turn_of(a, b, point_) <= 0;
+        return doubled_area(a, b, point_) <= 0;
     }
 
     const LoopsIndex& index_;

@@ -111,7 +111,7 @@ public:
 
 private:
     int turn_at(uint32_t v) const {
-        const int64_t turn = turn_of(arc_[links_.before[v]], arc_[v], arc_[links_.after[v]]);
+        const int64_t turn = doubled_area(arc_[links_.before[v]], arc_[v], arc_[links_.after[v]]);
         return (turn > 0) - (turn < 0);
     }
     double step(uint32_t from) const { return cross_of(arc_[from], arc_[links_.after[from]], arc_[0]); }
@@ -280,7 +280,7 @@ void order_visvalingam_whyatt(Span<const LatticePoint> arc, std::vector<Removal>
         if (v == 0 || v + 1 == arc.size())
             return;
         const double area =
-            0.5 * std::abs(double(turn_of(arc[links.before[v]], arc[v], arc[links.after[v]])));
+            0.5 * std::abs(double(doubled_area(arc[links.before[v]], arc[v], arc[links.after[v]])));
         queue.push({std::sqrt(area), v, ++versions[v]});
     };
     for (uint32_t v = 1; v + 1 < arc.size(); ++v)

@@ -25,7 +25,7 @@ bool may_meet(LatticePoint a, LatticePoint b, LatticePoint c, int64_t reach, con
         const int64_t y = dx > 0 ? box.max_y + reach : box.min_y - reach;
         return dx * (y - from.y) - dy * (x - from.x) < 0;
     };
-    if (turn_of(a, b, c) < 0)
+    if (doubled_area(a, b, c) < 0)
         std::swap(b, c);
     return !is_beyond(a, b) && !is_beyond(b, c) && !is_beyond(c, a);
 }

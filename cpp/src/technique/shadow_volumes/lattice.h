@@ -9,45 +9,14 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/lattice_points.h"
 #include "decalgl/core/position_grid.h"
 
 namespace decalgl::volume {
 
-struct LatticePoint {
-    int32_t x;
-    int32_t y;
-};
-
-inline bool operator==(LatticePoint a, LatticePoint b) {
-    return a.x == b.x && a.y == b.y;
-}
-
-// Twice the area of a triangle, positive where it runs counter-clockwise.
-inline int64_t doubled_area(LatticePoint a, LatticePoint b, LatticePoint c) {
-    return (int64_t{b.x} - a.x) * (int64_t{c.y} - a.y) - (int64_t{b.y} - a.y) * (int64_t{c.x} - a.x);
-}
-
-// Holds its border.
-struct LatticeBox {
-    int32_t min_x = INT32_MAX;
-    int32_t min_y = INT32_MAX;
-    int32_t max_x = INT32_MIN;
-    int32_t max_y = INT32_MIN;
-
-    void add(LatticePoint p) {
-        min_x = std::min(min_x, p.x);
-        min_y = std::min(min_y, p.y);
-        max_x = std::max(max_x, p.x);
-        max_y = std::max(max_y, p.y);
-    }
-    void add(const LatticeBox& other) {
-        min_x = std::min(min_x, other.min_x);
-        min_y = std::min(min_y, other.min_y);
-        max_x = std::max(max_x, other.max_x);
-        max_y = std::max(max_y, other.max_y);
-    }
-    bool holds(LatticePoint p) const { return min_x <= p.x && p.x <= max_x && min_y <= p.y && p.y <= max_y; }
-};
+using lattice::doubled_area;
+using lattice::LatticeBox;
+using lattice::LatticePoint;
 
 constexpr int lattice_bits = 30;
 constexpr double lattice_extent = 1 << lattice_bits;

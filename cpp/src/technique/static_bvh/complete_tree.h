@@ -50,9 +50,10 @@ inline void fill_tree(Span<const LatticeBox> objects, LatticeBox* nodes) {
     for (uint32_t i = 0; i < count; ++i)
         nodes[leaf - 1 + i] = objects[i];
     for (uint32_t node = leaf; node-- > 1;) {
-        const LatticeBox left = 2 * node <= stored ? nodes[2 * node - 1] : empty_box;
-        const LatticeBox right = 2 * node + 1 <= stored ? nodes[2 * node] : empty_box;
-        nodes[node - 1] = merged(left, right);
+        LatticeBox box;
+        for (uint32_t child = 2 * node; child <= std::min(2 * node + 1, stored); ++child)
+            box.add(nodes[child - 1]);
+        nodes[node - 1] = box;
     }
 }
 

@@ -38,7 +38,7 @@ public:
     DecalGroup build(const Stage& stage) {
         bvh_.charge.resize(bvh_.charge.bytes() + group_.looks.size() * sizeof(LookTexel) +
                            group_.styles.size() * (sizeof(Style) + sizeof(FeatureReference)));
-        LatticeBox box = empty_box;
+        LatticeBox box;
         if (group_.kind != GroupKind::fills) {
             strokes_.emplace(input_, std::move(stroke_slots_), group_, bvh_.charge);
             strokes_->lay(bvh_.lattice);
@@ -47,7 +47,7 @@ public:
         if (group_.kind != GroupKind::strokes) {
             fills_.emplace(input_, std::move(polygons_), group_, bvh_.charge);
             fills_->plant_quad_trees(bvh_.lattice, stage.part(0.0, 0.4));
-            box = merged(box, fills_->common_box());
+            box.add(fills_->common_box());
         }
         group_.grid = DecalGrid::over(common(box, bvh_.lattice.terrain), input_.bvh.cells);
         grow(group_.cells, uint64_t{group_.grid.cell_count()} + 1, "cells", bvh_.charge);

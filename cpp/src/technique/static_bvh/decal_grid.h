@@ -36,7 +36,7 @@ struct CellRange {
 };
 
 struct DecalGrid {
-    LatticeBox box = empty_box;
+    LatticeBox box;
     int32_t columns = 0;
     int32_t rows = 0;
     int32_t cell_width = 1;  // quanta

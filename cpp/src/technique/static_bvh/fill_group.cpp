@@ -22,12 +22,10 @@ Edge upward(uint32_t a, uint32_t b, const LargeArray<LatticePoint>& vertices) {
 
 // The box of the part's edges, which are written.
 LatticeBox FillBuilder::list_edges(const LatticePart& part, LargeArray<Edge>& edges) const {
-    LatticeBox box = empty_box;
+    LatticeBox box;
     const uint32_t first = part.first_vertex;
-    for (uint32_t i = 0; i < part.vertex_count; ++i) {
-        const LatticePoint p = group_.ring_vertices[first + i];
-        box = merged(box, {p.x, p.y, p.x, p.y});
-    }
+    for (uint32_t i = 0; i < part.vertex_count; ++i)
+        box.add(group_.ring_vertices[first + i]);
     for (uint32_t i = 0; i < edge_count(part); ++i)
         edges[first + i] = part.is_pairs
                                ? upward(first + 2 * i, first + 2 * i + 1, group_.ring_vertices)
@@ -42,7 +40,7 @@ void FillBuilder::plant_quad_trees(const Lattice& lattice, const Stage& stage) {
     const std::vector<LatticePart>& parts = rings_of.parts;
     WorkingArray<Edge> edges(input_.memory, group_.ring_vertices.size(), "edges");
     working.resize(working.bytes() + parts.size() * (sizeof(LatticeBox) + sizeof(Ring)));
-    std::vector<LatticeBox> boxes(parts.size(), empty_box);
+    std::vector<LatticeBox> boxes(parts.size());
     parallel_for(parts.size(), parts_at_once, input_.threads, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             boxes[i] = common(list_edges(parts[i], edges.values), lattice.terrain);
@@ -58,9 +56,9 @@ void FillBuilder::plant_quad_trees(const Lattice& lattice, const Stage& stage) {
 }
 
 LatticeBox FillBuilder::common_box() const {
-    LatticeBox box = empty_box;
+    LatticeBox box;
     for (size_t tree = 0; tree < owners_.size(); ++tree)
-        box = merged(box, group_.quads.boxes[tree]);
+        box.add(group_.quads.boxes[tree]);
     return box;
 }
 
@@ -188,9 +186,9 @@ void FillBuilder::write_cell(CellRecords& records, uint32_t cell, uint32_t next,
 
 LatticeBox FillBuilder::box_of(uint32_t cell, uint32_t index) const {
     const Exterior& exterior = group_.exteriors[index];
-    LatticeBox box = exterior.subtree == NO_SUBTREE ? empty_box : group_.quads.boxes[exterior.subtree];
+    LatticeBox box = exterior.subtree == NO_SUBTREE ? LatticeBox{} : group_.quads.boxes[exterior.subtree];
     for (uint32_t i = 0; i < exterior.interior_count; ++i)
-        box = merged(box, group_.quads.boxes[group_.interiors[exterior.first_interior + i]]);
+        box.add(group_.quads.boxes[group_.interiors[exterior.first_interior + i]]);
     return common(box, group_.grid.cell_box(cell));
 }
 

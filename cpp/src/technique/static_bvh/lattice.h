@@ -11,50 +11,16 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/lattice_points.h"
 #include "decalgl/core/position_grid.h"
 
 namespace decalgl::bvh {
 
-struct LatticePoint {
-    int32_t x;
-    int32_t y;
-};
-
-inline bool operator==(LatticePoint a, LatticePoint b) {
-    return a.x == b.x && a.y == b.y;
-}
-
-// Holds its border; empty where a minimum is above its maximum.
-struct LatticeBox {
-    int32_t min_x;
-    int32_t min_y;
-    int32_t max_x;
-    int32_t max_y;
-
-    bool empty() const { return min_x > max_x || min_y > max_y; }
-    bool holds(LatticePoint p) const { return min_x <= p.x && p.x <= max_x && min_y <= p.y && p.y <= max_y; }
-    bool holds(const LatticeBox& other) const {
-        return min_x <= other.min_x && other.max_x <= max_x && min_y <= other.min_y && other.max_y <= max_y;
-    }
-    bool meets(const LatticeBox& other) const {
-        return std::max(min_x, other.min_x) <= std::min(max_x, other.max_x) &&
-               std::max(min_y, other.min_y) <= std::min(max_y, other.max_y);
-    }
-};
+using lattice::LatticeBox;
+using lattice::LatticePoint;
 
 constexpr int32_t lattice_extent = 1 << 30;
 constexpr int32_t lattice_margin = (1 << 29) - 1;
-constexpr LatticeBox empty_box{INT32_MAX, INT32_MAX, INT32_MIN, INT32_MIN};
-
-inline LatticeBox merged(const LatticeBox& a, const LatticeBox& b) {
-    return {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y), std::max(a.max_x, b.max_x),
-            std::max(a.max_y, b.max_y)};
-}
-
-inline LatticeBox common(const LatticeBox& a, const LatticeBox& b) {
-    return {std::max(a.min_x, b.min_x), std::max(a.min_y, b.min_y), std::min(a.max_x, b.max_x),
-            std::min(a.max_y, b.max_y)};
-}
 
 struct Lattice {
     double left = 0.0;  // metres, of (0, 0)
@@ -62,7 +28,7 @@ struct Lattice {
     double quantum = 1.0;  // metres, a power of two
     int32_t first_block_x = 0;
     int32_t first_block_y = 0;
-    LatticeBox terrain{};  // nothing outside is ever seen
+    LatticeBox terrain;  // nothing outside is ever seen
 
     // `reach`: half the width of the widest line, metres; the lattice is coarser where that passes its
     // margin.

@@ -39,15 +39,15 @@ StrokeOutline StrokeBuilder::outline_of(Segment segment) const {
 
 LatticeBox StrokeBuilder::common_box() const {
     const size_t count = laid_.values.size();
-    std::vector<LatticeBox> boxes(block_count(count, segments_at_once), empty_box);
+    std::vector<LatticeBox> boxes(block_count(count, segments_at_once));
     parallel_for(count, segments_at_once, input_.threads, [&](size_t begin, size_t end) {
         LatticeBox& box = boxes[begin / segments_at_once];
         for (size_t i = begin; i < end; ++i)
-            box = merged(box, outline_of(laid_.values[i]).box);
+            box.add(outline_of(laid_.values[i]).box);
     });
-    LatticeBox all = empty_box;
+    LatticeBox all;
     for (const LatticeBox& box : boxes)
-        all = merged(all, box);
+        all.add(box);
     return all;
 }
 

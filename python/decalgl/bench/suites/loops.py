@@ -11,10 +11,9 @@ from __future__ import annotations
 import statistics
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 import decalgl as dg
 
+from .. import cameras
 from ..measure import draw, interleaved, preprocessing
 from ..workload import KINDS, add_contours
 
@@ -56,39 +55,16 @@ def scene_of(work: Workload, kind: str, size: str, technique: str | dg.Technique
     return scene
 
 
-def flight(work: Workload) -> list[dg.Camera]:
-    """The four phases of section 6.4: zooming in, along at one height, looking around, through a valley."""
-    x0, y0, x1, y1 = work.ground.bounds
-    wide, middle = x1 - x0, np.array([(x0 + x1) / 2, (y0 + y1) / 2])
-    cameras = []
-    for t in (np.arange(FLIGHT) + 0.5) / FLIGHT:
-        part = 4.0 * t % 1.0
-        if t < 0.25:
-            cameras.append(dg.Camera.orbit((*middle, 0.0), wide * 1.5 * 0.05**part, 200, 45))
-        elif t < 0.5:
-            x, y = middle[0] + wide * 0.4 * (part - 0.5), middle[1]
-            cameras.append(dg.Camera.orbit((x, y, 0.0), wide * 0.075, 200, 45))
-        elif t < 0.75:
-            eye = (*middle, wide * 0.05)
-            angle = 2.0 * np.pi * part
-            target = (middle[0] + wide * np.sin(angle), middle[1] + wide * np.cos(angle), -0.25 * wide)
-            cameras.append(dg.Camera.look_at(eye, target))
-        else:
-            x, y = middle + wide * 0.2 * part
-            cameras.append(dg.Camera.orbit((x, y, 0.0), wide * 0.03, 45, 20))
-    return cameras
-
-
-def passes(renderer: dg.Renderer, cameras: list[dg.Camera], name: str) -> Measure:
+def passes(renderer: dg.Renderer, path: list[dg.Camera], name: str) -> Measure:
     """Measures the layers' passes over some views, their sum as `name`_ms, that of the terrain as `name`_terrain_ms."""
 
     def measured() -> Times:
         layers = terrain = 0.0
-        for camera in cameras:
+        for camera in path:
             for one in draw(renderer, camera, "none").stats.passes:
                 layers += one["ms"] * (one["name"] in ("static", "loops"))
                 terrain += one["ms"] * (one["name"] == "terrain")
-        return {f"{name}_ms": layers / len(cameras), f"{name}_terrain_ms": terrain / len(cameras)}
+        return {f"{name}_ms": layers / len(path), f"{name}_terrain_ms": terrain / len(path)}
 
     return measured
 
@@ -98,13 +74,16 @@ def _compare_detail(work: Workload, records: Records, kind: str, size: str) -> N
     static = work.renderer(scene_of(work, kind, size, "static"))
     full = work.renderer(scene_of(work, kind, size, dg.Loops(detail=FULL)))
     half = work.renderer(scene_of(work, kind, size, "loops"))
-    views = {**{name: [camera] for name, camera in work.views.items()}, "flight": flight(work)}
-    for view, cameras in views.items():
+    views = {
+        **{name: [camera] for name, camera in work.views.items()},
+        "flight": cameras.flight(work.ground.bounds, FLIGHT),
+    }
+    for view, path in views.items():
         times = interleaved(
             work.runs_of(size),
-            passes(static, cameras, "static"),
-            passes(full, cameras, "full"),
-            passes(half, cameras, "half"),
+            passes(static, path, "static"),
+            passes(full, path, "full"),
+            passes(half, path, "half"),
         )
         records.at(f"{kind} {size}", view, "loops").update(
             **times,
@@ -114,11 +93,11 @@ def _compare_detail(work: Workload, records: Records, kind: str, size: str) -> N
 
 
 def _compare_primitives(work: Workload, records: Records, size: str) -> None:
-    cameras = [work.views[name] for name in ("overview", "oblique", "close", "worst")]
+    path = [work.views[name] for name in ("overview", "oblique", "close", "worst")]
     first: Times = {}
     for name, technique in DRAWN.items():
         work.say(f"isolines {size}, {name}")
-        times = _drawn(work, scene_of(work, "isolines", size, technique), cameras)
+        times = _drawn(work, scene_of(work, "isolines", size, technique), path)
         first = first or times
         records.at(f"isolines {size}", None, f"loops {name}").update(
             **times,
@@ -130,10 +109,11 @@ def _compare_primitives(work: Workload, records: Records, size: str) -> None:
 
 def _compare_indexes(work: Workload, records: Records, size: str) -> None:
     constant: Times = {}
+    flight = cameras.flight(work.ground.bounds, FLIGHT)
     for name in INDEXES:
         work.say(f"iso-bands {size}, {name}")
         try:
-            times = _drawn(work, scene_of(work, "iso-bands", size, dg.Loops(bvh=name)), flight(work))
+            times = _drawn(work, scene_of(work, "iso-bands", size, dg.Loops(bvh=name)), flight)
         except dg.MemoryLimitError:
             continue  # an index larger than shaders can read has no row
         constant = times if name == "constant" else constant
@@ -146,12 +126,12 @@ def _compare_indexes(work: Workload, records: Records, size: str) -> None:
             )
 
 
-def _drawn(work: Workload, scene: dg.Scene, cameras: list[dg.Camera]) -> Times:
+def _drawn(work: Workload, scene: dg.Scene, path: list[dg.Camera]) -> Times:
     """What the index holds, and the median of some rounds over all views."""
     renderer = work.renderer(scene)
-    measured = passes(renderer, cameras, "loops")
+    measured = passes(renderer, path, "loops")
     rounds = [measured() for _ in range(2)]
-    counts = draw(renderer, cameras[0], "none").stats.counts
+    counts = draw(renderer, path[0], "none").stats.counts
     held = {name: float(value) for name, value in counts.items() if name.startswith("loops_")}
     return {
         **held,

@@ -1,0 +1,163 @@
+"""The report: all parts at the smallest size through to a page whose links lead somewhere, and what it is made of."""
+
+from __future__ import annotations
+
+import csv
+import json
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import decalgl as dg
+from decalgl import cli, reference
+from decalgl.bench import comparison
+from decalgl.errors import InputError
+from decalgl.report import case_studies, command, derive, docs, factors, page, parts, plots, views
+from decalgl.report.accuracy import seen_part
+from decalgl.report.part import Figure, Table, byte_count, number
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Links(HTMLParser):
+    """Collects what a page leads to and shows, and its anchors."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.targets: list[str] = []
+        self.anchors: set[str] = set()
+        self.open: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        assert tag not in ("script", "link", "iframe")
+        if tag not in ("meta", "img", "br"):
+            self.open.append(tag)
+        for name, value in attrs:
+            if name in ("href", "src", "xlink:href") and value:
+                self.targets.append(value)
+            if name == "id" and value:
+                self.anchors.add(value)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a report of the smallest size."""
+    folder = tmp_path_factory.mktemp("report")
+    command.make(folder, "tiny", say=lambda _: None)
+    return folder
+
+
+def test_the_page_stands_alone_and_its_links_lead_somewhere(report: Path) -> None:
+    text = (report / "index.html").read_text()
+    found = Links(text)
+    assert not found.open
+    assert "url(http" not in text
+    pictures = 0
+    for target in found.targets:
+        assert "://" not in target, target
+        if target.startswith("#"):
+            assert target[1:] in found.anchors, target
+        elif not target.startswith("data:"):
+            assert (report / target).is_file(), target
+            pictures += target.endswith(".png")
+    assert pictures > 5
+    assert set(parts.PARTS) <= found.anchors
+
+
+def test_rows_are_in_the_files(report: Path) -> None:
+    results = json.loads((report / "report.json").read_text())
+    assert {row["part"] for row in results["records"]} == set(parts.PARTS)
+    for name in parts.PARTS:
+        own = [row for row in results["records"] if row["part"] == name]
+        with (report / f"{name}.csv").open() as stream:
+            assert len(list(csv.DictReader(stream))) == len(own)
+    same = comparison.compare(results, results)
+    assert not same.worse
+    assert same.compared > 20
+
+
+def test_the_page_can_be_made_again(report: Path) -> None:
+    before = (report / "index.html").read_text()
+    assert cli.run(["report", "--out", str(report), "--redraw"]) == 0
+    assert (report / "index.html").read_text() == before
+
+
+def test_coverage_is_nearer_to_the_reference_than_no_filter(report: Path) -> None:
+    rows = json.loads((report / "report.json").read_text())["records"]
+    static = {row["setting"]: row for row in rows if row.get("technique") == "static" and "edge_rms" in row}
+    assert static["coverage"]["edge_rms"] < 0.03 < static["none"]["edge_rms"]
+    assert static["coverage"]["image_rms"] < static["ssaa 4"]["image_rms"] < static["none"]["image_rms"]
+
+
+def test_the_documentation_is_that_of_the_last_report() -> None:
+    results = comparison.read(ROOT / docs.KEPT)
+    for page_name in docs.PAGES:
+        text = (ROOT / page_name).read_text()
+        assert docs.MARKED.search(text), page_name
+        assert docs.fill(text, results) == text, f"{page_name}: run decalgl report --out DIR --docs"
+
+
+@pytest.mark.parametrize("arguments", [{"size": "huge"}, {"names": ["colours"]}, {"step": "vast"}])
+def test_unknown_words_are_refused(tmp_path: Path, arguments: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="Choose from"):
+        command.make(tmp_path / "x", **{"size": "tiny", **arguments})
+
+
+def test_the_reference_may_look_at_the_seen_part_alone() -> None:
+    drawn = case_studies.build("floods", "tiny")
+    scene, camera = drawn.scene(), views.views(drawn)["close"]
+    size, crop = (64, 36), (20, 10, 36, 20)
+    part = seen_part(scene, camera, size, crop)
+    assert sum(map(len, (layer.features for layer in part.layers))) < sum(
+        len(layer.features) for layer in scene.layers
+    )
+    whole = reference.render_overlay(scene, camera, size, crop, samples=4)
+    assert np.array_equal(reference.render_overlay(part, camera, size, crop, samples=4).rgba, whole.rgba)
+
+
+def test_bands_share_the_ground_among_them() -> None:
+    z = np.add.outer(np.arange(20.0), np.sin(np.arange(30.0))).astype(np.float32)
+    ground = dg.Terrain(z, 0.0, 19.0, 1.0, 1.0)
+    table, heights = derive.bands(ground, [(-5.0, 4.5), (4.5, 12.3), (12.3, 30.0)])
+    assert table.sizes().sum() == pytest.approx(19.0 * 29.0)
+    assert set(heights) == {4.5, 12.3, 30.0}
+    twice = derive.repeated(table, np.array([[0.0, 0.0], [100.0, 0.0]]))
+    assert twice.sizes().sum() == pytest.approx(2.0 * 19.0 * 29.0)
+    kept = derive.chosen(twice, twice.coords[twice.part_offsets[twice.feature_offsets[:-1]], 0] < 50.0)
+    assert np.array_equal(kept.coords, table.coords)
+
+
+def test_the_front_has_what_nothing_beats() -> None:
+    points = [plots.Point(x, y, "a", f"{x} {y}") for x, y in ((1, 5), (2, 6), (2, 3), (4, 3), (5, 1))]
+    assert [(point.x, point.y) for point in plots.pareto(points)] == [(1, 5), (2, 3), (5, 1)]
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "spread", "expected"),
+    [(1.0, 2.0, 0.0, "+"), (2.0, 1.0, 0.0, "–"), (1.0, 1.05, 0.0, "~"), (1.0, 1.5, 0.2, "~")],
+)
+def test_signs_leave_noise_out(first: float, last: float, spread: float, expected: str) -> None:
+    rows = [{"rank": i, "update_ms": ms, "update_ms_spread": spread} for i, ms in enumerate((first, last))]
+    assert factors.sign(rows, "update_ms") == expected
+
+
+def test_pages_escape_what_is_text() -> None:
+    figure = Figure("a < b", "see [c](d.png) & e", table=Table(("<x>",), [("1,234 ms",), ("[f](g.png)",)]))
+    text = page.page("t", {"cores": 2}, "n", [page.Section("s", "S", "about", [figure])])
+    assert "a &lt; b" in text
+    assert '<a href="d.png">c</a> &amp; e' in text
+    assert '<td class="number">1,234 ms</td>' in text
+    assert not Links(text).open
+
+
+def test_numbers_in_words() -> None:
+    assert [number(value) for value in (1234.5, 0.01234, 0.0, float("nan"))] == ["1,234", "0.0123", "0", "–"]
+    assert [byte_count(count) for count in (12, 12_345, 1.2e10)] == ["12.0 bytes", "12.3 kB", "12.0 GB"]
