@@ -136,7 +136,7 @@ def test_exponents(power: float, noise: float) -> None:
 
 
 def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
-    refusing = scaling.Way(dg.Static(), (1e4, 0, 0), {"memory_limit": 1000})
+    refusing = scaling.Way(dg.Static(), (1e5, 0, 0), {"memory_limit": 1000})
     monkeypatch.setattr(scaling, "WAYS", {"static": scaling.WAYS["static"], "volume": refusing})
     rows = stored(scaling.rows(context))
     sweeps = {row["sweep"] for row in rows}
