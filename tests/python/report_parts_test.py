@@ -64,6 +64,7 @@ def test_what_is_needless_is_found() -> None:
         ("coordinates", 1e8, "static", "exact"),
         ("coordinates", 1e9, "static", "refuses with an error"),
         ("feature size", 1e9, "static", "warns"),
+        ("feature size", 1e9, "volume", "warns"),  # of which nothing is left
         ("exaggeration", 1000.0, "static bvh", "exact"),
         ("tilt", 0.2, "dynamic bins", "exact"),
         ("slope", 89.9, "distance_field", "exact"),
