@@ -64,6 +64,7 @@ def test_what_is_needless_is_found() -> None:
         ("coordinates", 1e8, "static", "exact"),
         ("coordinates", 1e9, "static", "refuses with an error"),
         ("feature size", 1e9, "static", "warns"),
+        ("feature size", 1e9, "volume", "warns"),  # of which nothing is left
         ("exaggeration", 1000.0, "static bvh", "exact"),
         ("tilt", 0.2, "dynamic bins", "exact"),
         ("slope", 89.9, "distance_field", "exact"),
@@ -136,7 +137,7 @@ def test_exponents(power: float, noise: float) -> None:
 
 
 def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
-    refusing = scaling.Way(dg.Static(), (1e4, 0, 0), {"memory_limit": 1000})
+    refusing = scaling.Way(dg.Static(), (1e5, 0, 0), {"memory_limit": 1000})
     monkeypatch.setattr(scaling, "WAYS", {"static": scaling.WAYS["static"], "volume": refusing})
     rows = stored(scaling.rows(context))
     sweeps = {row["sweep"] for row in rows}

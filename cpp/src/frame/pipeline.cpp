@@ -75,6 +75,7 @@ void Pipeline::upload(std::shared_ptr<const PreparedScene> scene) {
     try {
         if (!is_change) {
             // The old scene goes first: both at once may not fit.
+            at_centres_ = nullptr;
             drawers_.clear();
             terrain_.reset();
             targets_.reset();
@@ -126,16 +127,14 @@ UpdateReport Pipeline::update(std::shared_ptr<const PreparedScene> scene, const 
     is_updated_ = false;
     image_.reset();
     image_charge_ = MemoryCharge();
-    const bool shows_surface = at_centres_ != nullptr && scene_ && scene_->shares_ground(*scene) &&
-                               same_view(request_, request) && request_.antialias == request.antialias;
-    if (!shows_surface)
-        at_centres_ = nullptr;
     if (scene_ != scene) {
         const gl::PassTimer timer(&timings_, "upload");
         upload(std::move(scene));
     }
+    if (!same_view(request_, request) || request_.antialias != request.antialias)
+        at_centres_ = nullptr;
     request_ = request;
-    if (!shows_surface)
+    if (at_centres_ == nullptr)
         set_view();
     choose_shown();
     make_targets();
@@ -330,17 +329,26 @@ void Pipeline::draw_image(std::vector<uint8_t>& image) {
     gl::check_errors("drawing the picture");
 }
 
+// Of layers that are seen, or would be had they not been rounded to nothing; 0 where there are none.
+double Pipeline::quantum_in_view() const {
+    double quantum = 0.0;
+    for (const PreparedPass& pass : scene_->passes) {
+        const PreparedCounts counts = pass.prepared->counts();
+        if ((pass.shows_anything() || counts.pieces == 0) && is_in_view(pass.reach))
+            quantum = std::max(quantum, counts.quantum);
+    }
+    // Positions are offsets in blocks, in float32.
+    return quantum > 0.0 ? std::max(quantum, std::ldexp(scene_->positions.block_size, -23)) : 0.0;
+}
+
 void Pipeline::measure_quantum(const Piece& piece) {
     const int x = request_.width / 2 - piece.shown.x, y = request_.height / 2 - piece.shown.y;
-    if (!shows_layers() || x < 0 || y < 0 || x >= piece.shown.width || y >= piece.shown.height)
+    const double quantum = quantum_in_view();
+    if (quantum == 0.0 || x < 0 || y < 0 || x >= piece.shown.width || y >= piece.shown.height)
         return;
     const std::vector<float> middle = gl::read_pixels<float>(
         targets_->seen.gbuffer.framebuffer, GL_COLOR_ATTACHMENT1, x + piece.shown.x - piece.drawn.x,
         y + piece.shown.y - piece.drawn.y, 1, 1, gl::transfer_format(GL_RGBA32F), 4);
-    // Positions are offsets in blocks, in float32.
-    double quantum = std::ldexp(scene_->positions.block_size, -23);
-    for (const size_t i : shown_)
-        quantum = std::max(quantum, scene_->passes[i].prepared->counts().quantum);
     const double depth = view_block_.forward.w + static_cast<double>(middle[2]);
     const double pixel = pixel_at(request_.camera, request_.height, depth);
     if (std::isfinite(depth) && pixel > 0.0)

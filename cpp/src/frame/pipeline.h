@@ -87,6 +87,7 @@ private:
             action(i, *drawers_[i].technique);
     }
     void draw_image(std::vector<uint8_t>& image);
+    double quantum_in_view() const;
     void measure_quantum(const Piece& piece);
     void write_view_block();
     bool has_lens() const;

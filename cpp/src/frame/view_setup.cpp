@@ -12,7 +12,12 @@ namespace decalgl {
 namespace {
 
 constexpr double radians = 3.14159265358979323846 / 180.0;
-constexpr double near_distance = 1e-3;
+constexpr double farthest_near = 1e-3;
+
+// Metres before the eye where what is seen begins: a millimetre, unless the camera looks at something as near.
+double near_distance_of(const Camera& camera) {
+    return std::min(farthest_near, 0.1 * glm::distance(camera.eye, camera.target));
+}
 
 struct SplitNumber {
     int32_t whole;
@@ -64,6 +69,7 @@ void set_projection(const Camera& camera, const CameraBasis& basis, double aspec
         set_row(block.clip_from_base, 3, {0.0, 0.0, 0.0}, 1.0);
         block.base_offset.w = static_cast<float>(-base_depth);
     } else {
+        const double near_distance = near_distance_of(camera);
         set_row(block.clip_from_base, 2, {0.0, 0.0, 0.0}, near_distance);
         set_row(block.clip_from_base, 3, basis.forward, base_depth);
         block.base_offset.w = static_cast<float>(near_distance - base_depth);

@@ -14,6 +14,7 @@ import numpy as np
 import decalgl as dg
 from decalgl import reference
 
+from ..bench.measure import LAYER_PASSES
 from .case_studies import GROUND
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ WHITE = dg.Relief(color="white", strength=0.0)
 
 @dataclass(frozen=True)
 class Judged:
-    """Errors by the name that rows have them under, and the picture of the layers over plain ground, (h, w, 3)."""
+    """Errors and bytes by the names of rows, and the picture of the layers over plain ground, (h, w, 3)."""
 
     errors: Row
     picture: NDArray[np.uint8]
@@ -55,29 +56,37 @@ class Judge:
 
     def judge(self, setting: Setting) -> dict[str, Judged]:
         """The errors of a setting by view. Raises DecalError where it does not draw the map."""
-        over_black = self._drawn(setting, BLACK)
-        over_white = self._drawn(setting, WHITE)
-        return {
-            view: self._compared(setting, view, over_black[view], over_white[view]) for view in self._cameras
-        }
+        over_black, held = self._drawn(setting, BLACK)
+        over_white, _ = self._drawn(setting, WHITE)
+        found = {}
+        for view in self._cameras:
+            errors, whole = self._compared(setting, view, over_black[view], over_white[view])
+            found[view] = Judged({**errors, "layers_bytes": held[view]}, _over_ground(whole))
+        return found
 
     def true_picture(self, view: str) -> NDArray[np.uint8]:
         """The crop as the reference draws it, lines in metres."""
         return _over_ground(self._true(view, pixels=False).rgba)
 
-    def _drawn(self, setting: Setting, relief: dg.Relief) -> dict[str, FloatArray]:
+    def _drawn(self, setting: Setting, relief: dg.Relief) -> tuple[dict[str, FloatArray], dict[str, int]]:
+        """The pictures by view, and how many bytes the layers held, prepared data and GL objects."""
         options: dict[str, Any] = {"terrain_error": 0.0, **setting.renderer}
         key = repr(sorted(options.items(), key=str))
         renderer = self._renderers.setdefault(key, dg.Renderer(self._size, **options))
         renderer.set_picture(self._size, setting.antialias)
         renderer.preprocess(self._map.scene(setting.polygons, setting.lines, setting.pixels, relief))
-        pictures = {}
+        pictures, held = {}, {}
         for view, camera in self._cameras.items():
             renderer.update(camera)
-            pictures[view] = renderer.render().image[..., :3] / 255.0
-        return pictures
+            frame = renderer.render()
+            pictures[view] = frame.image[..., :3] / 255.0
+            held[view] = sum(count for name, count in frame.stats.bytes.items() if name in LAYER_PASSES)
+        return pictures, held
 
-    def _compared(self, setting: Setting, view: str, black: FloatArray, white: FloatArray) -> Judged:
+    def _compared(
+        self, setting: Setting, view: str, black: FloatArray, white: FloatArray
+    ) -> tuple[Row, FloatArray]:
+        """The errors, and colour and coverage of the whole picture."""
         alpha = 1.0 - (white - black).mean(axis=-1, keepdims=True)
         whole = np.concatenate([black, alpha], axis=-1)
         left, top, right, bottom = self.crop
@@ -95,7 +104,7 @@ class Judge:
             "leak": found.leak,
             "partly_covered": found.partial / max(1, found.pixels),
         }
-        return Judged(errors, _over_ground(whole))
+        return errors, whole
 
     def _true(self, view: str, pixels: bool) -> Overlay:
         if (view, pixels) not in self._truth:

@@ -27,7 +27,7 @@ NOTE = (
 STEPS_KNOWN = ("tiny", "offline", "small", "medium", "large")
 PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (480, 270), "full": (1280, 720)}
 CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 9), "quick": (80, 45), "full": (320, 180)}
-RUNS: dict[Size, int] = {"tiny": 1, "quick": 3, "full": 5}
+RUNS: dict[Size, int] = {"tiny": 1, "quick": 2, "full": 5}
 
 
 def make(out: Path, size: str, names: Sequence[str] = (), step: str | None = None, say: Any = None) -> Path:
@@ -63,15 +63,20 @@ def make(out: Path, size: str, names: Sequence[str] = (), step: str | None = Non
         context.say(f"[bold]{name}[/]")
         records += [{"part": name, **row} for row in PARTS[name].rows(context)]
         context.say(f"{time.monotonic() - started:.0f} s")
+        _store(context, records)
+    return write(out)
+
+
+def _store(context: Context, records: list[Row]) -> None:
+    """After each part, so that a report that breaks off keeps what it has."""
     results = {
         "machine": measure.machine(),
         "runs": context.runs,
-        "size": size,
+        "size": context.size,
         "step": context.step,
         "records": records,
     }
-    (out / "report.json").write_text(json.dumps(results, indent=1) + "\n")
-    return write(out)
+    (context.out / "report.json").write_text(json.dumps(results, indent=1) + "\n")
 
 
 def write(out: Path) -> Path:

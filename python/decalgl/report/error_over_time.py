@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import decalgl as dg
 
-from ..bench.measure import LAYER_PASSES, drawing, floor, interleaved, timed
+from ..bench.measure import drawing, floor, interleaved, timed
 from ..errors import DecalError
 from . import choices, plots, views
 from .accuracy import Judge
@@ -124,15 +124,6 @@ def _time(
             row["frame"] = row["frame_ms"] / row["floor_ms"]
             row["layers"] = (row["frame_ms"] - times[f"{name}_ground_ms"]) / row["floor_ms"]
             row["prepare_ms"] = prepare[setting.prepared]
-            row["layers_bytes"] = _held(renderers[setting.prepared], camera, setting)
-
-
-def _held(renderer: dg.Renderer, camera: dg.Camera, setting: Setting) -> int:
-    """Bytes of prepared data and GL objects of the techniques."""
-    renderer.set_picture(renderer.size, setting.antialias)
-    renderer.update(camera)
-    held = renderer.render().stats.bytes
-    return sum(count for name, count in held.items() if name in LAYER_PASSES)
 
 
 def figures(rows: Sequence[Row]) -> list[Figure]:

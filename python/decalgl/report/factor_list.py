@@ -52,17 +52,12 @@ class Factor:
         if not self.few:
             object.__setattr__(self, "few", (self.values[0], self.values[-1]))
 
-    @property
-    def values_text(self) -> str:
-        """Its first and last value."""
-        return f"{self.values[0]}, {self.values[-1]}"
-
 
 class Maps:
     """The scenes that factors are measured on: slices of height and isolines, whole or in parts."""
 
     def __init__(self, context: Context) -> None:
-        self.size = context.chosen((32, 18), (480, 270), context.picture)
+        self.size = context.chosen((32, 18), (320, 180), context.picture)
         self._map = build("floods", context.step)
 
     @functools.cached_property
@@ -212,7 +207,7 @@ def _dynamic(
     def way(method: Any) -> Callable[[Maps, Any], Case]:
         def case(maps: Maps, value: Any) -> Case:
             looks, camera, size = look(maps, value)
-            looks = {"width": 4.0, "width_units": "px", **looks, "technique": dg.Dynamic(method=method)}
+            looks = {"width": 2.0, "width_units": "px", **looks, "technique": dg.Dynamic(method=method)}
             return Case(_scene(maps, None, maps.lines, **looks), camera, size)
 
         return case
@@ -324,7 +319,7 @@ FACTORS = (
         "dynamic lines",
         "Figure 5.15",
         ("+", "", "+"),
-        (1.0, 4.0, 16.0),
+        (1.0, 2.0, 4.0, 8.0),
         _dynamic(lambda maps, width: ({"width": width}, maps.cameras["oblique"], maps.size)),
     ),
     Factor(
@@ -348,4 +343,71 @@ FACTORS = (
     ),
 )
 
-REASONS: dict[tuple[str, str, str, str], str] = {}
+_GROWTH = (
+    "A pixel looks into one cell, whose list grows less than the map; what a pixel costs anyhow hides it."
+)
+_SMALL = "The map of this size is prepared in little more than what any map takes."
+_BUFFERS = "Buffers here are as large as the view needs, not as large as all lines might."
+_SUBTREES = (
+    "Cells refer to subtrees, and to none where all is outside: shallow trees of large leaves leave more cells with a"
+    " reference. Leaves inside or outside have no edges, and closing edges run along one side only."
+)
+_CELLS = (
+    "A wider line lies in more cells, and references are made while preparing: most of it at sixteen widths."
+)
+_OVERLAPS = "Few of these lines lie over each other, so that little is behind what has become translucent."
+_ROUND = "Corners are not stored here; a round one reaches farther than a bevelled one, so segments lie in more cells."
+_SHARED = {
+    ("data complexity", "all decals", "render_ms"): _GROWTH,
+    ("data complexity", "all decals", "update_ms"): _SMALL,
+    ("kinds of decals", "all decals", "render_ms"): _GROWTH,
+    ("kinds of decals", "all decals", "update_ms"): _SMALL,
+    ("leaf capacity", "polygons", "memory_bytes"): _SUBTREES,
+    ("leaf capacity", "polygons", "update_ms"): _SUBTREES,
+    ("quad-tree depth", "polygons", "memory_bytes"): _SUBTREES,
+    ("quad-tree depth", "polygons", "update_ms"): _SUBTREES,
+    ("width", "static lines", "update_ms"): _CELLS,
+    (
+        "width",
+        "static lines",
+        "render_ms",
+    ): "Wider opaque lines end the walk sooner, which makes up for longer lists.",
+    ("transparency", "static lines", "render_ms"): _OVERLAPS,
+    ("transparency", "dynamic lines", "render_ms"): _OVERLAPS,
+    ("zooming in", "dynamic lines", "memory_bytes"): _BUFFERS,
+    ("image resolution", "dynamic lines", "memory_bytes"): _BUFFERS,
+}
+REASONS: dict[tuple[str, str, str, str], str] = {
+    **{
+        (name, decals, way, column): why
+        for (name, decals, column), why in _SHARED.items()
+        for way in ("published", "ours")
+    },
+    ("data distribution", "all decals", "published", "memory_bytes"): (
+        "The grid is as large as the data: where that is crowded, lines as wide as before lie in more of its cells."
+    ),
+    ("data distribution", "all decals", "ours", "memory_bytes"): (
+        "Cells are made bucket by bucket over the terrain: data that is crowded fills fewer buckets."
+    ),
+    ("data distribution", "all decals", "ours", "update_ms"): (
+        "Cells are made bucket by bucket over the terrain: data that is crowded fills fewer buckets."
+    ),
+    ("data distribution", "all decals", "published", "update_ms"): _SMALL,
+    ("data distribution", "all decals", "ours", "render_ms"): (
+        "Walks end at what is opaque, so that longer lists of crowded cells are not walked to their ends."
+    ),
+    ("corner style", "static lines", "published", "memory_bytes"): _ROUND,
+    ("corner style", "static lines", "published", "update_ms"): (
+        "Segments with a mitre or a bevel are cut to cells with both their neighbours at hand."
+    ),
+    ("corner style", "static lines", "published", "render_ms"): _ROUND,
+    ("corner style", "static lines", "ours", "memory_bytes"): (
+        "Corners are not stored here: one is found between two edges that follow each other in a list."
+    ),
+    ("corner style", "dynamic lines", "published", "memory_bytes"): (
+        "A pixel's list has the lines that cover it, and bevelled ones cover fewer pixels than round ones."
+    ),
+    ("corner style", "dynamic lines", "ours", "memory_bytes"): (
+        "With corners that are not round a segment is looked for as far as a mitre's tip may reach, in more tiles."
+    ),
+}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import decalgl as dg
 
 from ..bench.measure import LAYER_PASSES, draw, drawing, interleaved, timed
+from ..errors import DecalError
 from . import plots
 from .factor_list import COLUMNS, FACTORS, REASONS, Maps
 from .part import Figure, Table
@@ -27,9 +28,11 @@ TITLE = "Influence factors"
 ABOUT = (
     "What grows with what, as in chapter 5 of Zechmeister 2020: + grows, – shrinks, ~ stays within the noise, empty:"
     " nothing changes. Published are the thesis's structures, built anew here; ours are the grid and the tiles. The"
-    " sign of a time counts from a change of a tenth and four times the spread on, that of memory from 5 % on."
+    " sign of a time counts from a change of a quarter, four times the spread, and 50 ms of preparing or 1 ms of"
+    " drawing on, that of memory from 5 % on."
 )
-NOISE, SPREADS = 0.1, 4.0
+NOISE, SPREADS = 0.25, 4.0
+LEAST_MS = {"update_ms": 50.0, "render_ms": 1.0}
 MEMORY_NOTHING, MEMORY_LITTLE = 0.002, 0.05
 
 
@@ -48,22 +51,29 @@ def rows(context: Context) -> list[Row]:
 
 
 def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]) -> list[Row]:
-    """Prepares and draws the cases in turns."""
-    renderers = {value: _prepared(case) for value, case in cases.items()}
+    """Prepares and draws the cases in turns; a row of one that is refused says so."""
+    words = {"factor": factor.name, "decals": factor.decals, "technique": way}
+    found: list[Row] = []
+    renderers = {}
+    ranks = {value: rank for rank, value in enumerate(cases)}
+    for value, case in list(cases.items()):
+        prepared = _prepared(case)
+        if isinstance(prepared, str):
+            found.append({**words, "value": value, "refused": prepared})
+            del cases[value]
+        else:
+            renderers[value] = prepared
     measures: list[Measure] = []
     for value, case in cases.items():
         measures.append(drawing(renderers[value], case.camera, case.antialias, value))
         measures.append(_preparing(case, value))
     times = interleaved(context.runs, *measures)
-    found = []
-    for rank, (value, case) in enumerate(cases.items()):
+    for value, case in cases.items():
         held = draw(renderers[value], case.camera, case.antialias).stats.bytes
         row: Row = {
-            "factor": factor.name,
-            "decals": factor.decals,
-            "technique": way,
+            **words,
             "value": value,
-            "rank": rank,
+            "rank": ranks[value],
             "memory_bytes": sum(count for name, count in held.items() if name in LAYER_PASSES),
             "render_ms": times[f"{value}_frame_ms"] - times[f"{value}_ground_ms"],
             "update_ms": times[f"{value}_prepare_ms"],
@@ -75,9 +85,14 @@ def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]
     return found
 
 
-def _prepared(case: Case) -> dg.Renderer:
-    renderer = dg.Renderer(case.size, **case.renderer)
-    renderer.preprocess(case.scene)
+def _prepared(case: Case) -> dg.Renderer | str:
+    """A renderer that has drawn the case, or what it says where it does not."""
+    try:
+        renderer = dg.Renderer(case.size, **case.renderer)
+        renderer.preprocess(case.scene)
+        draw(renderer, case.camera, case.antialias)
+    except DecalError as error:
+        return str(error)
     return renderer
 
 
@@ -89,11 +104,19 @@ def _preparing(case: Case, value: str) -> Measure:
 
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """Table 5.4, the disagreements with their reasons, and a plot for each factor."""
+    every, rows = rows, [row for row in rows if "refused" not in row]
     found = [_signs_figure(rows), _reasons_figure(rows)]
     for factor in FACTORS:
         own = [row for row in rows if (row["factor"], row["decals"]) == (factor.name, factor.decals)]
         if own:
             found.append(_factor_figure(factor, own))
+    refused = [row for row in every if "refused" in row]
+    if refused:
+        cells = [
+            (row["factor"], row["decals"], row["technique"], row["value"], row["refused"]) for row in refused
+        ]
+        table = Table(("factor", "decals", "way", "value", "error"), cells)
+        found.append(Figure("Refused", "Values that a way does not draw.", table=table))
     return found
 
 
@@ -104,7 +127,9 @@ def sign(rows: Sequence[Row], column: str) -> str:
     if first <= 0.0 or last <= 0.0:
         return "" if first == last else "+"
     change = abs(math.log(last / first))
-    if column.endswith("_ms"):
+    if column in LEAST_MS:
+        if abs(last - first) < LEAST_MS[column]:
+            return "~"
         least = math.log1p(max(NOISE, SPREADS * max(row.get(f"{column}_spread", 0.0) for row in ranked)))
         return "~" if change <= least else "+" if last > first else "–"
     if change <= MEMORY_NOTHING:
@@ -147,7 +172,9 @@ def _signs_figure(rows: Sequence[Row]) -> Figure:
         blank = ["no such choice"] + [""] * 2
         published = signs[:3] if "published" in ours else blank
         own_signs = signs[-3:] if "ours" in ours else blank
-        cells.append((factor.decals, factor.name, factor.values_text, *factor.signs, *published, *own_signs))
+        values = [row["value"] for row in sorted(next(iter(ours.values())), key=lambda row: row["rank"])]
+        span = f"{values[0]}, {values[-1]}"
+        cells.append((factor.decals, factor.name, span, *factor.signs, *published, *own_signs))
     heads = [
         f"{who}: {name[0].upper()}" for who in ("thesis", "published", "ours") for name in COLUMNS.values()
     ]
@@ -176,10 +203,7 @@ def _factor_figure(factor: Factor, rows: Sequence[Row]) -> Figure:
         for column, name in COLUMNS.items():
             if own and own[0][column] > 0.0:
                 series[f"{name}, {way}"] = [(row["rank"], row[column] / own[0][column]) for row in own]
-    labels = [
-        row["value"]
-        for row in sorted(_of(rows, factor, next(iter(factor.ways))), key=lambda row: row["rank"])
-    ]
+    labels = list(dict.fromkeys(row["value"] for row in sorted(rows, key=lambda row: row["rank"])))
     return Figure(
         f"{factor.figure}: {factor.name}, {factor.decals}",
         f"Relative to the first value. Values: {', '.join(labels)}.",

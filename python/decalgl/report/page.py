@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 LINK = re.compile(r"\[([^\]]+)\]\(([^)\s]+)\)")
 NUMBER = re.compile(r"[-–+×≤≥<>]?\s?[\d.,]+(e-?\d+)?( ?(ms|s|bytes|kB|MB|GB|%|px|m))?")
+LONG = 60  # letters of a cell that would be a tower on a narrow window
 STYLE = """
 :root { --ink: #2b2f33; --soft: #68727a; --line: #dfe3e6; --paper: #fff; --tint: #f4f6f7; --link: #1b6ca8; }
 * { box-sizing: border-box; }
@@ -41,6 +42,7 @@ table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabu
 th, td { padding: .3rem .7rem; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { background: var(--tint); font-weight: 600; }
 td.number { text-align: right; white-space: nowrap; }
+td.long { min-width: 20rem; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(15rem, 1fr)); gap: 1rem; margin: .75rem 0; }
 .pictures figure { margin: 0; }
 .pictures img { width: 100%; height: auto; display: block; border: 1px solid var(--line); }
@@ -118,8 +120,8 @@ def _table(table: Table) -> str:
 
 
 def _cell(text: str) -> str:
-    kind = ' class="number"' if NUMBER.fullmatch(text.strip()) else ""
-    return f"<td{kind}>{_text(text)}</td>"
+    kind = "number" if NUMBER.fullmatch(text.strip()) else "long" if len(text) > LONG else ""
+    return f'<td class="{kind}">{_text(text)}</td>' if kind else f"<td>{_text(text)}</td>"
 
 
 def _pictures(pictures: Mapping[str, str]) -> str:

@@ -59,8 +59,8 @@ class Context:
         """Writes pixels (h, w, 3 or 4) of bytes as a PNG; its address relative to the page. name: a few words."""
         from PIL import Image
 
-        plain = "".join(letter if letter.isalnum() else "_" for letter in name.lower()).strip("_")
-        path = self.out / PICTURES / f"{plain}.png"
+        words = "".join(letter if letter.isascii() and letter.isalnum() else " " for letter in name.lower())
+        path = self.out / PICTURES / f"{'_'.join(words.split())}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
         Image.fromarray(image).convert("RGB").save(path, optimize=self.size != "tiny")
         return f"{PICTURES}/{path.name}"

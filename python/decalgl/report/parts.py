@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import error_over_time, factors, papers, scenes
+from . import error_over_time, factors, needless, papers, scaling, scenes, stability
 
 if TYPE_CHECKING:
     from .part import Part
@@ -14,4 +14,7 @@ PARTS: dict[str, Part] = {
     "error_over_time": error_over_time,
     "factors": factors,
     "papers": papers,
+    "scaling": scaling,
+    "stability": stability,
+    "needless": needless,
 }

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 # Techniques look alike in all plots: colour and marker.
@@ -40,6 +41,7 @@ OTHERS = (
     "#b0407f",
 )
 MARKERS = "osD^vPX*<>"
+FEW_POWERS = 300.0
 INK, GRID = "#2b2f33", "#dfe3e6"
 STYLE: Any = {
     "svg.hashsalt": "decalgl",
@@ -107,9 +109,9 @@ def scatter(
 ) -> str:
     """Points by group, each a link to its picture. front: a line along those that no other beats in both, as SVG."""
     figure, axes = new()
-    for group in dict.fromkeys(point.group for point in points):
+    for place, group in enumerate(dict.fromkeys(point.group for point in points)):
         some = [point for point in points if point.group == group]
-        color, marker = look(group)
+        color, marker = look(group, place)
         drawn = axes.scatter(
             [point.x for point in some],
             [point.y for point in some],
@@ -222,11 +224,25 @@ def _explain(figure: Figure) -> None:
         figure.legend(loc="outside lower center", ncols=4)
 
 
+def _label_log(axis: Axis, limits: tuple[float, float]) -> None:
+    """Plain numbers at 1, 2 and 5 where an axis spans few powers of ten."""
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+
+    low, high = limits
+    if low <= 0.0 or high / low > FEW_POWERS:
+        return
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FormatStrFormatter("%g"))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def _finish(axes: Axes, x_label: str, y_label: str, log: str) -> None:
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
     if "x" in log:
         axes.set_xscale("log")
+        _label_log(axes.xaxis, axes.get_xlim())
     if "y" in log:
         axes.set_yscale("log")
+        _label_log(axes.yaxis, axes.get_ylim())
     axes.grid(visible=True, color=GRID)

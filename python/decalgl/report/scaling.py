@@ -38,7 +38,7 @@ UNKNOWN_SPREAD = 0.1  # of times of one round, as a share
 
 @dataclass(frozen=True)
 class Way:
-    """A technique; most: segments up to which it is asked, in a tiny, quick and full report.
+    """A technique; most: segments up to which it is asked, in a tiny, quick and full report; 0: not at all.
 
     fills: whether it draws polygons.
     """
@@ -51,14 +51,14 @@ class Way:
 
 
 WAYS = {
-    "static": Way(dg.Static(), (1e4, 1e6, 3e7)),
-    "static bvh": Way(dg.Static(), (1e4, 1e5, 1e7), {"index": "bvh"}),
+    "static": Way(dg.Static(), (1e5, 1e6, 3e7)),
+    "static bvh": Way(dg.Static(), (0, 1e5, 1e7), {"index": "bvh"}),
     "dynamic bins": Way(dg.Dynamic(method="bins"), (1e4, 1e5, 1e7), pixels=True, fills=False),
-    "dynamic lists": Way(dg.Dynamic(method="lists"), (1e4, 1e5, 1e6), pixels=True, fills=False),
-    "loops": Way(dg.Loops(), (1e4, 1e5, 1e6)),
-    "volume": Way(dg.Volume(), (1e4, 1e5, 1e6)),
-    "clipmap": Way(dg.Clipmap(), (1e4, 1e5, 1e6)),
-    "distance_field": Way(dg.DistanceField(), (1e4, 1e5, 1e6), fills=False),
+    "dynamic lists": Way(dg.Dynamic(method="lists"), (0, 1e4, 1e6), pixels=True, fills=False),
+    "loops": Way(dg.Loops(), (0, 1e5, 1e6)),
+    "volume": Way(dg.Volume(), (0, 1e4, 1e6)),
+    "clipmap": Way(dg.Clipmap(), (0, 1e5, 1e6)),
+    "distance_field": Way(dg.DistanceField(), (0, 1e4, 1e6), fills=False),
 }
 
 
@@ -76,39 +76,45 @@ def rows(context: Context) -> list[Row]:
 # Sweeps
 
 
-def _over_segments(context: Context) -> Iterable[Row]:
-    counts = context.chosen([1e3, 1e4], [1e4, 1e5, 1e6], [1e4, 1e5, 1e6, 1e7, 3e7])
+def _ways(context: Context, segments: float) -> dict[str, Way]:
+    """The techniques that are asked for so many segments."""
     place = context.chosen(0, 1, 2)
-    for count in counts:
+    return {name: way for name, way in WAYS.items() if segments <= way.most[place]}
+
+
+def _over_segments(context: Context) -> Iterable[Row]:
+    for count in context.chosen([1e3, 1e4], [1e4, 1e5, 1e6], [1e4, 1e5, 1e6, 1e7, 3e7]):
         context.say(f"scaling: {count:g} segments")
-        ways = {name: way for name, way in WAYS.items() if count <= way.most[place]}
+        ways = _ways(context, count)
         scenes = {name: _lines_scene(way, round(count)) for name, way in ways.items()}
         yield from _measured(context, "segments", count, scenes, ways, context.picture)
 
 
 def _over_pixels(context: Context) -> Iterable[Row]:
-    scenes = {name: _lines_scene(way, 10_000) for name, way in WAYS.items()}
+    ways = _ways(context, 10_000)
+    scenes = {name: _lines_scene(way, 10_000) for name, way in ways.items()}
     sizes = context.chosen(
         [(160, 90), (320, 180)],
-        [(320, 180), (640, 360), (1280, 720)],
+        [(160, 90), (320, 180), (640, 360)],
         [(320, 180), (640, 360), (1280, 720), (2560, 1440), (3840, 2160)],
     )
     for size in sizes:
         context.say(f"scaling: {size[0]} x {size[1]} pixels")
-        yield from _measured(context, "pixels", size[0] * size[1], scenes, WAYS, size)
+        yield from _measured(context, "pixels", size[0] * size[1], scenes, ways, size)
 
 
 def _over_layers(context: Context) -> Iterable[Row]:
-    ways = {name: way for name, way in WAYS.items() if name in ("static", "static bvh", "loops")}
-    for count in context.chosen([1, 4], [1, 4, 16], [1, 4, 16, 64, 256]):
+    several = ("static", "static bvh", "loops")  # layers in one index, or one after the other
+    ways = {name: way for name, way in _ways(context, 20_000).items() if name in several}
+    for count in context.chosen([1, 4], [1, 16], [1, 4, 16, 64, 256]):
         context.say(f"scaling: {count} layers")
         scenes = {name: _lines_scene(way, 20_000, count) for name, way in ways.items()}
         yield from _measured(context, "layers", count, scenes, ways, context.picture)
 
 
 def _over_overlap(context: Context) -> Iterable[Row]:
-    ways = {name: way for name, way in WAYS.items() if way.fills}
-    for count in context.chosen([1, 10], [1, 10, 100], [1, 10, 100, 1000]):
+    ways = {name: way for name, way in _ways(context, 1).items() if way.fills}
+    for count in context.chosen([1, 10], [1, 30], [1, 10, 100, 1000]):
         context.say(f"scaling: {count} polygons over one another")
         scenes = {name: _stack_scene(way, count) for name, way in ways.items()}
         yield from _measured(context, "overlap", count, scenes, ways, context.picture)
