@@ -44,7 +44,7 @@ class Drawer:
             column="material",
             cmap=honolulu.PALETTE,
             outline=outline,
-            technique=dg.Loops(order=order),
+            technique=dg.Loops(order=order, bvh="fitted"),
         )
         self._renderer = dg.Renderer(size=SIZE)
         self._renderer.preprocess(scene)

@@ -122,7 +122,7 @@ void register_loops(py::module_& module) {
         .def_readwrite("minimum_coverage", &LoopsBvh::minimum_coverage);
 
     py::class_<LoopsChoice, TechniqueOptions, std::shared_ptr<LoopsChoice>>(module, "LoopsChoice")
-        .def(py::init([](const py::object& order, bool segments, const LoopsBvh& bvh,
+        .def(py::init([](const py::object& order, bool segments, const std::optional<LoopsBvh>& bvh,
                          const LoopsDetail& detail) {
                  LoopsChoice choice;
                  if (py::isinstance<py::str>(order)) {

@@ -100,9 +100,13 @@ void register_styles(py::module_& module) {
     def_array(fill, "colors", &Fill::colors);
     def_array(fill, "hatch_of", &Fill::hatch_of);
     py::class_<DecalLook> decals(module, "DecalLook");
-    decals.def(py::init<>());
+    decals.def(py::init<>())
+        .def_readwrite("styles", &DecalLook::styles)
+        .def_readwrite("hatches", &DecalLook::hatches);
     def_array(decals, "colors", &DecalLook::colors);
     def_array(decals, "widths", &DecalLook::widths);
+    def_array(decals, "style_of", &DecalLook::style_of);
+    def_array(decals, "hatch_of", &DecalLook::hatch_of);
     py::class_<LayerLook> look(module, "LayerLook");
     look.def(py::init<>())
         .def_readwrite("layer", &LayerLook::layer)

@@ -82,6 +82,10 @@ class LayerChanges:
         states = {**self._states, index: done.state}
         looks = [] if self.lens is None else self._lens_looks(self.lens, states)
         self._core.edit(done.core)
+        # What was added looks as the layer was prepared.
+        prepared_otherwise = done.state.style_look() if len(done.rows) else None
+        if prepared_otherwise is not None:
+            self._core.restyle([prepared_otherwise])
         self._states = states
         self._any = True
         if self.lens is not None:

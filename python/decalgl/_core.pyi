@@ -74,6 +74,10 @@ class Fill:
 class DecalLook:
     colors: NDArray[np.uint8]
     widths: NDArray[np.float64]
+    styles: list[StrokeStyle]
+    style_of: NDArray[np.uint32]
+    hatches: list[Hatch]
+    hatch_of: NDArray[np.uint32]
     def __init__(self) -> None: ...
 
 class LayerLook:
@@ -148,7 +152,7 @@ class LoopsChoice(TechniqueOptions):
         self,
         order: str | Callable[[NDArray[np.float64]], tuple[Any, Any]],
         segments: bool,
-        bvh: LoopsBvh,
+        bvh: LoopsBvh | None,
         detail: LoopsDetail,
     ) -> None: ...
 

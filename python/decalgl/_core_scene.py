@@ -12,7 +12,7 @@ from ._triangles import triangles_of
 
 if TYPE_CHECKING:
     from .scene import Layer, Scene
-    from .strokes import Fill, LinePattern, Stroke, StrokeStyle
+    from .strokes import Fill, Hatch, LinePattern, Stroke, StrokeStyle
 
 
 def core_scene(scene: Scene) -> _core.Scene:
@@ -58,11 +58,17 @@ def _core_fill(given: Fill | None) -> _core.Fill:
     if given is None:
         return fill
     fill.colors = given.colors.reshape(-1)
-    plain = _core.Hatch(spacing=0.0, width=0.0, angle=0.0, crossed=False)
-    fill.hatches = [plain if each is None else _core.Hatch(**vars(each)) for each in given.hatches]
+    fill.hatches = [core_hatch(each) for each in given.hatches]
     if given.hatch_of is not None:
         fill.hatch_of = given.hatch_of
     return fill
+
+
+def core_hatch(given: Hatch | None) -> _core.Hatch:
+    """None is an even fill."""
+    if given is None:
+        return _core.Hatch(spacing=0.0, width=0.0, angle=0.0, crossed=False)
+    return _core.Hatch(**vars(given))
 
 
 def _core_stroke(given: Stroke | None) -> _core.Stroke:
@@ -71,7 +77,7 @@ def _core_stroke(given: Stroke | None) -> _core.Stroke:
         return stroke
     stroke.colors = given.colors.reshape(-1)
     stroke.widths = given.widths
-    stroke.styles = [_core_style(style) for style in given.styles]
+    stroke.styles = [core_style(style) for style in given.styles]
     stroke.widest = given.widest
     stroke.in_pixels = given.units == "px"
     limits = given.limits
@@ -81,7 +87,8 @@ def _core_stroke(given: Stroke | None) -> _core.Stroke:
     return stroke
 
 
-def _core_style(given: StrokeStyle) -> _core.StrokeStyle:
+def core_style(given: StrokeStyle) -> _core.StrokeStyle:
+    """A style of strokes as the core takes it."""
     style = _core.StrokeStyle()
     style.corner = _core.Corner.__members__[given.corner]
     style.cap = _core.Cap.__members__[given.cap]

@@ -220,6 +220,7 @@ def _extended(
             decal,
             colors=np.concatenate([decal.colors, colors]),
             widths=None if widths is None else np.concatenate([decal.widths, widths]),
+            styles=None if decal.styles is None else decal.styles.extended(len(table)),
         )
     before, rows = len(state.rows), np.concatenate([state.rows, state.row_count + table.rows])
     order = state.draw_order

@@ -13,8 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
+from ._choices import LayerRows
 from ._colors import alpha_values, parse_color
+from ._core_scene import core_hatch, core_style
 from ._filters import Columns, rows_meant
+from ._style_changes import FILL_STYLES, STROKE_STYLES, Styles, changed_hatches, changed_strokes
 from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, UnsupportedError, close_matches
 from .scene import Layer, draw_order_by
@@ -29,12 +32,23 @@ if TYPE_CHECKING:
 
 COLOR_KEYWORDS = ("color", "column", "cmap", "vmin", "vmax", "norm", "alpha", "categorical", "missing_kwds")
 DECAL_KEYWORDS = (*COLOR_KEYWORDS, "width")
-KEYWORDS = (*DECAL_KEYWORDS, "order", "visible", "opacity", "by", "where", "outline", "casing", "technique")
+KEYWORDS = (
+    *DECAL_KEYWORDS,
+    *STROKE_STYLES,
+    *FILL_STYLES,
+    "order",
+    "visible",
+    "opacity",
+    "by",
+    "where",
+    "outline",
+    "casing",
+    "technique",
+)
 # Of layers and their outlines and casings; lists of what lies where are made for them.
-PREPARED = (
-    "corner", "miter_limit", "cap", "dash", "bands", "hatch", "slope_correction", "widest", "width_units",
-    "mode",
-)  # fmt: skip
+PREPARED = ("cap", "slope_correction", "widest", "width_units", "mode")
+# Of strokes and of fills.
+STYLES_OF = ("styles", "hatches")
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,12 +57,14 @@ class DecalState:
 
     colors: uint8 (features, 4). widths: float64 (features) or None.
     coloring: what a legend says of them; None for casings, and for what was opened from a file.
+    styles: of strokes, or hatches of fills; None for what was opened from a file.
     """
 
     colors: NDArray[np.uint8]
     widths: NDArray[np.float64] | None = None
     widest: float = 0.0
     coloring: Coloring | None = None
+    styles: Styles | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,12 +119,31 @@ class LayerState:
             old = None if before is None else before.decals[role]
             if decal.widths is not None and (old is None or old.widths is not decal.widths):
                 core.widths = decal.widths
+            if decal.styles is not None and (old is None or old.styles is not decal.styles):
+                _set_styles(core, decal.styles, role)
             setattr(look, role, core)
         if self.draw_order is not None and (before is None or before.draw_order is not self.draw_order):
             look.draw_order = self.draw_order
         if self.technique is not None and (before is None or before.technique is not self.technique):
             look.technique_options = self.technique.core_options()
         return look
+
+    def style_look(self) -> _core.LayerLook | None:
+        """The styles in force alone, or None where they are those of the layer as it was prepared."""
+        look = _core.LayerLook()
+        look.layer = self.layer.index
+        changed = False
+        for role, decal in self.decals.items():
+            own = getattr(self.layer, role, None)
+            if (
+                decal.styles is None
+                or own is None
+                or decal.styles.values is getattr(own, STYLES_OF[role == "fill"])
+            ):
+                continue
+            _set_styles(getattr(look, role), decal.styles, role)
+            changed = True
+        return look if changed else None
 
     def seen_shares(self) -> NDArray[np.float64]:
         """How much of each feature's colour is seen: opacity, and 0 for what is hidden."""
@@ -126,6 +161,17 @@ class LayerState:
         return colors
 
 
+def _set_styles(look: _core.DecalLook, styles: Styles, role: str) -> None:
+    if role == "fill":
+        look.hatches = [core_hatch(each) for each in styles.values]
+        if styles.place_of is not None:
+            look.hatch_of = styles.place_of
+        return
+    look.styles = [core_style(each) for each in styles.values]
+    if styles.place_of is not None:
+        look.style_of = styles.place_of
+
+
 def first_state(layer: Layer | PreparedLayer, look: _core.LayerLook) -> LayerState:
     """The state of a layer as it was prepared or opened; `look` is the core's answer."""
     rows = layer.rows
@@ -139,8 +185,13 @@ def first_state(layer: Layer | PreparedLayer, look: _core.LayerLook) -> LayerSta
             own = None if scene_layer is None else getattr(scene_layer, role)
             widths = core.widths if core.widths.size else getattr(own, "widths", None)
             coloring = _coloring_of(scene_layer, role)
+            styles = None
+            if own is not None:
+                styles = (
+                    Styles(own.hatches, own.hatch_of) if role == "fill" else Styles(own.styles, own.style_of)
+                )
             decals[role] = DecalState(
-                core.colors.reshape(-1, 4), widths, getattr(own, "widest", 0.0), coloring
+                core.colors.reshape(-1, 4), widths, getattr(own, "widest", 0.0), coloring, styles
             )
     title = "" if scene_layer is None else scene_layer.coloring.title
     return LayerState(layer, rows, count, attributes, title, decals)
@@ -162,11 +213,21 @@ def _explained(state: LayerState, layer: Layer) -> Layer:
     for role, decal in state.decals.items():
         own = getattr(layer, role)
         widths = {} if decal.widths is None else {"widths": decal.widths[:count]}
-        parts[role] = replace(own, colors=decal.colors[:count], **widths)
+        parts[role] = replace(
+            own, colors=decal.colors[:count], **widths, **_explained_styles(decal, role, count)
+        )
         if decal.coloring is not None:
             name = "coloring" if role == main else "outline_coloring"
             parts[name] = decal.coloring.seen(seen)
     return replace(layer, **parts)
+
+
+def _explained_styles(decal: DecalState, role: str, count: int) -> dict[str, Any]:
+    if decal.styles is None:
+        return {}
+    place_of = None if decal.styles.place_of is None else decal.styles.place_of[:count]
+    names = (STYLES_OF[role == "fill"], "hatch_of" if role == "fill" else "style_of")
+    return dict(zip(names, (decal.styles.values, place_of), strict=True))
 
 
 def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
@@ -233,7 +294,14 @@ def require_known(given: Mapping[str, Any], known: tuple[str, ...], name: str) -
 
 def _decal_keywords(state: LayerState, main: str, given: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
     """Keywords by the decals that they are for."""
-    wanted: dict[str, Mapping[str, Any]] = {main: {key: given[key] for key in DECAL_KEYWORDS if key in given}}
+    own = (*DECAL_KEYWORDS, *(FILL_STYLES if main == "fill" else STROKE_STYLES))
+    wanted: dict[str, Mapping[str, Any]] = {main: {key: given[key] for key in own if key in given}}
+    for key in (*FILL_STYLES, *STROKE_STYLES):
+        if key in given and key not in own:
+            raise StyleError(
+                f"Layer {state.layer.name!r}: {key}= is no style of {'fills' if main == 'fill' else 'lines'}."
+                f"{' Give it to outline=.' if main == 'fill' else ''}"
+            )
     for keyword, role in (("outline", "stroke"), ("casing", "casing")):
         if keyword not in given:
             continue
@@ -245,7 +313,12 @@ def _decal_keywords(state: LayerState, main: str, given: Mapping[str, Any]) -> d
         if not isinstance(given[keyword], Mapping):
             raise StyleError(f"{keyword}= must be a dict of keywords such as {{'color': 'red'}}.")
         wanted[role] = {key: value for key, value in given[keyword].items() if value is not None}
-        require_known(wanted[role], DECAL_KEYWORDS, state.layer.name)
+        styles = STROKE_STYLES if role == "stroke" else ("dash",)
+        require_known(wanted[role], (*DECAL_KEYWORDS, *styles), state.layer.name)
+    # Casings turn as their lines do.
+    turns = {key: given[key] for key in ("corner", "miter_limit") if key in given}
+    if turns and "casing" in state.decals:
+        wanted["casing"] = {**wanted.get("casing", {}), **turns}
     return wanted
 
 
@@ -256,7 +329,36 @@ def _restyled_decal(
     if where is not None:
         # Rows that are marked are no part of what the legend explains.
         colors, coloring = np.where(where[:, None], colors, decal.colors), decal.coloring
-    decal = replace(decal, colors=colors, coloring=coloring)
+    decal = _restyled_width(state, replace(decal, colors=colors, coloring=coloring), wanted, where)
+    if any(key in wanted for key in (*STROKE_STYLES, *FILL_STYLES)):
+        decal = replace(decal, styles=_styles(state, decal, wanted, where))
+    return decal
+
+
+def _styles(
+    state: LayerState, decal: DecalState, wanted: Mapping[str, Any], where: NDArray[np.bool_] | None
+) -> Styles:
+    if not isinstance(state.layer, Layer) or state.attributes is None or decal.styles is None:
+        raise UnsupportedError(
+            f"Layer {state.layer.name!r} comes from a saved scene, which keeps no styles to change. Prepare the"
+            " scene from its data."
+        )
+    if state.layer.technique.name != "static":
+        raise StyleError(
+            f"technique {state.layer.technique.name!r} keeps the styles that it was prepared with. Use"
+            " technique='static'."
+        )
+    column = wanted.get("column", state.by)
+    rows = LayerRows(state.layer.name, state.attributes, state.rows, np.inf, column)
+    if "hatch" in wanted:
+        return changed_hatches(decal.styles, wanted["hatch"], rows, where)
+    assert decal.widths is not None
+    return changed_strokes(decal.styles, wanted, rows, decal.widths, where)
+
+
+def _restyled_width(
+    state: LayerState, decal: DecalState, wanted: Mapping[str, Any], where: NDArray[np.bool_] | None
+) -> DecalState:
     if "width" not in wanted:
         return decal
     if decal.widths is None:

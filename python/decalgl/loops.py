@@ -156,9 +156,12 @@ class Loops(Technique):
     order: which vertices go first: "douglas_peucker", "wang_mueller", "visvalingam_whyatt", or a function that takes
         the vertices of an arc, float64 (n, 2) in metres, and gives (indices, errors): 1 to n - 2, the first to go
         first, with the metres that each removal is off by.
-    primitives: of lines and outlines, "tri" (refinement triangles) or "seg" (the segments of all levels).
-    bvh: "fitted" (chosen from the data), one of the paper's table 1 by its name, or a `LoopsBvh`.
+    primitives: in a bvh, lines and outlines are "tri" (refinement triangles) or "seg" (the segments of all levels).
+    bvh: None for cells that are made anew for each view, of what is active in it: the fastest where details are
+        left out. Or the paper's index, which is prepared once and read pixel by pixel: one of its table 1 by name,
+        "fitted" (chosen from the data), or a `LoopsBvh`.
     detail: what the layer begins with; `Renderer.restyle(layer, technique=)` changes it, for the neighbours too.
+        Colours, visibility, widths and order change as those of static layers do; a bvh keeps widths and order.
 
     Draws even fills, outlines, and round lines of one colour a feature with casings; UnsupportedError for other styles.
     Neighbouring layers of equal options are prepared together, so that borders that they share stay shared.
@@ -170,15 +173,15 @@ class Loops(Technique):
 
     order: str | RemovalOrder = "douglas_peucker"
     primitives: str = "tri"
-    bvh: str | LoopsBvh = "fitted"
+    bvh: str | LoopsBvh | None = None
     detail: Detail = field(default_factory=Detail)
 
     def __post_init__(self) -> None:
         if not callable(self.order):
             _check_choice("Loops", "order", self.order, ORDERS, " or a function")
         _check_choice("Loops", "primitives", self.primitives, PRIMITIVES)
-        if not isinstance(self.bvh, LoopsBvh):
-            _check_choice("Loops", "bvh", self.bvh, tuple(NAMED_BVHS), " or a decalgl.LoopsBvh")
+        if self.bvh is not None and not isinstance(self.bvh, LoopsBvh):
+            _check_choice("Loops", "bvh", self.bvh, tuple(NAMED_BVHS), ", a decalgl.LoopsBvh or None")
         if not isinstance(self.detail, Detail):
             raise InputError(f"Loops: detail must be a decalgl.Detail, but it is {self.detail!r}.")
         self.core_options()
@@ -193,9 +196,12 @@ class Loops(Technique):
 
     def core_options(self) -> _core.LoopsChoice:
         """As the core takes it."""
-        bvh = self.bvh if isinstance(self.bvh, LoopsBvh) else NAMED_BVHS[self.bvh]
+        bvh = NAMED_BVHS[self.bvh] if isinstance(self.bvh, str) else self.bvh
         return _core.LoopsChoice(
-            order=self.order, segments=self.primitives == "seg", bvh=bvh.core(), detail=self.detail.core()
+            order=self.order,
+            segments=self.primitives == "seg",
+            bvh=None if bvh is None else bvh.core(),
+            detail=self.detail.core(),
         )
 
     def simplified(self, features: FeatureTable, tolerances: Sequence[float]) -> list[RingArrays]:

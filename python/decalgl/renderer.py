@@ -206,13 +206,14 @@ class Renderer:
         order: "feature", "size", a column or numbers, as in `Scene.add_polygons`.
         where: the rows that all of this but `order` changes, given as `visible` is; the others stay as they are.
         technique: the layer's own with other choices, such as a `DistanceField` with other styles.
-        outline, casing: dicts of color ... width, for outlines of polygons and casings of lines.
+        corner, miter_limit, dash, bands, hatch: as in `Scene.add_lines` and `add_polygons`, as far as the index has
+            their places (docs/interaction.md); hatch=False is an even fill.
+        outline, casing: dicts of color ... width and styles, for outlines of polygons and casings of lines.
 
         Each keyword stays until it is given again. What the scene says is not changed: `preprocess(scene)` gives
         the original again. Frames of before, their ids and picks stay right.
 
-        Raises StyleError, ColumnError and InputError, which leave everything as it was; UnsupportedError for
-        index="bvh".
+        Raises StyleError, ColumnError, InputError and UnsupportedError, which leave everything as it was.
         """
         self._changes.restyle(layer, keywords)
 
@@ -240,7 +241,7 @@ class Renderer:
         edit. As with `restyle`, the scene is not changed, and frames of before stay right.
 
         Raises InputError for rows without a feature, what `Scene.add_lines` raises, and UnsupportedError for
-        index="bvh" and for what was opened from a file, which has no vertices; all leave everything as it was.
+        what `open` took from a file, which has no vertices; all leave everything as it was.
         """
         return self._changes.edit(layer, add, remove, move, replace, style)
 

@@ -222,9 +222,7 @@ def _shared_style(keywords: StrokeKeywords, what: str) -> StrokeStyle:
     """What all features of a stroke have in common. Raises StyleError and UnsupportedError."""
     if not is_word(keywords.width_units, ("m", "px")):
         raise StyleError(f"{what}width_units must be 'm' or 'px', but it is {keywords.width_units!r}.")
-    limit = finite_number(keywords.miter_limit, f"{what}miter_limit")
-    if not 0.0 <= limit <= 180.0:
-        raise StyleError(f"{what}miter_limit must be an angle from 0 to 180 degrees, but it is {limit:g}.")
+    limit = checked_miter_limit(keywords.miter_limit, what)
     correction = keywords.slope_correction
     if correction is not None:
         _require_word(f"{what}slope_correction", correction, SLOPE_CORRECTIONS, "or None")
@@ -234,8 +232,16 @@ def _shared_style(keywords: StrokeKeywords, what: str) -> StrokeStyle:
     return StrokeStyle(
         miter_limit=limit,
         slope_correction=correction or "none",
-        bands=_bands(keywords.bands, what),
+        bands=color_bands(keywords.bands, what),
     )
+
+
+def checked_miter_limit(value: Any, what: str) -> float:
+    """Degrees. Raises StyleError."""
+    limit = finite_number(value, f"{what}miter_limit")
+    if not 0.0 <= limit <= 180.0:
+        raise StyleError(f"{what}miter_limit must be an angle from 0 to 180 degrees, but it is {limit:g}.")
+    return limit
 
 
 def _limits(keywords: StrokeKeywords, what: str) -> WidthLimits:
@@ -275,7 +281,7 @@ def _require_word(keyword: str, value: Any, known: tuple[str, ...], more: str = 
         )
 
 
-def _bands(bands: Any, what: str) -> tuple[ColorBand, ...]:
+def color_bands(bands: Any, what: str) -> tuple[ColorBand, ...]:
     if bands is None:
         return ()
     shape = f"{what}bands must be a list of (reach, colour), such as [(0.6, 'white'), (1.0, 'black')]"
@@ -328,13 +334,13 @@ def _styles(
     """The distinct styles, and each feature's place among them."""
     shared = _shared_style(keywords, what)
     corners = choose(
-        rows, f"{what}corner", keywords.corner, _word(CORNERS), lambda value: is_word(value, CORNERS)
+        rows, f"{what}corner", keywords.corner, word_of(CORNERS), lambda value: is_word(value, CORNERS)
     )
-    caps = choose(rows, f"{what}cap", keywords.cap, _word(CAPS), lambda value: is_word(value, CAPS))
-    dashes = choose(rows, f"{what}dash", keywords.dash, parse_dash, _is_one_dash)
+    caps = choose(rows, f"{what}cap", keywords.cap, word_of(CAPS), lambda value: is_word(value, CAPS))
+    dashes = choose(rows, f"{what}dash", keywords.dash, parse_dash, is_one_dash)
     if len(widths) == 0:
         return (shared,), None
-    sizes = _widths_of_dashes(dashes, widths)
+    sizes = widths_of_dashes(dashes, widths)
     keys, count = np.zeros(len(widths), dtype=np.int64), 1
     for codes, distinct in (
         (corners.codes, len(corners.values)),
@@ -358,7 +364,7 @@ def _styles(
     return tuple(styles), None if len(styles) == 1 else style_of.astype(np.uint32)
 
 
-def _widths_of_dashes(
+def widths_of_dashes(
     dashes: Choices[Pattern | None], widths: NDArray[np.float64]
 ) -> NDArray[np.int64] | None:
     """A number for each width where dashes are as long as the line is wide, 0 for other features."""
@@ -369,7 +375,7 @@ def _widths_of_dashes(
     return numbers if dashes.codes is None else np.where(scaled[dashes.codes], numbers, 0)
 
 
-def _word(known: tuple[str, ...]) -> Callable[[Any], Any]:
+def word_of(known: tuple[str, ...]) -> Callable[[Any], Any]:
     """A parser of one of a few words; the first is what rows without one have."""
 
     def parse(value: Any) -> Any:
@@ -383,16 +389,19 @@ def _word(known: tuple[str, ...]) -> Callable[[Any], Any]:
     return parse
 
 
-def _is_one_dash(value: Any) -> bool:
+def is_one_dash(value: Any) -> bool:
     if isinstance(value, str):
         return value in NAMED_DASHES
     return value is None or isinstance(value, Pattern) or is_dash_lengths(value)
 
 
+def hatches_of(hatch: Any, rows: LayerRows) -> Choices[Hatch | None]:
+    """The hatch of each feature, None for an even fill. Raises StyleError."""
+    return choose(rows, "hatch", hatch, _one_hatch, lambda value: value is None or isinstance(value, Hatch))
+
+
 def _fill(hatch: Any, rows: LayerRows, colors: NDArray[np.uint8]) -> Fill:
-    hatches = choose(
-        rows, "hatch", hatch, _one_hatch, lambda value: value is None or isinstance(value, Hatch)
-    )
+    hatches = hatches_of(hatch, rows)
     codes = None if hatches.codes is None else hatches.codes.astype(np.uint32)
     return Fill(colors, tuple(hatches.values) or (None,), codes)
 

@@ -11,7 +11,7 @@ import pytest
 from shapely import LineString, Polygon, affinity, box
 
 import decalgl as dg
-from interaction_test import BOTH, picks, prepared, some_areas, some_ways
+from changed_scenes import BOTH, INDEXES, picks, prepared, some_areas, some_ways
 from small_scenes import MAP, OBLIQUE, SIZE, hilly_scene
 
 if TYPE_CHECKING:
@@ -44,11 +44,12 @@ def assert_close(one: dg.Frame, other: dg.Frame, rows: dict[int, np.ndarray[Any,
     assert np.abs(one.image.astype(int) - other.image).max() <= 1
 
 
+@INDEXES
 @BOTH
 @pytest.mark.parametrize("widest", [0.0, 6.0])
-def test_an_edited_picture_is_that_of_the_edited_data(antialias: str, widest: float) -> None:
+def test_an_edited_picture_is_that_of_the_edited_data(antialias: str, widest: float, index: str) -> None:
     areas, ways = some_areas(), some_ways()
-    renderer = prepared(scene_of(areas, ways, widest), antialias)
+    renderer = prepared(scene_of(areas, ways, widest), antialias, index=index)
     renderer.render()
 
     added = renderer.edit("areas", add=NEW_AREAS, remove=[3, 17], move={5: (10.0, -4.0)})
@@ -65,7 +66,7 @@ def test_an_edited_picture_is_that_of_the_edited_data(antialias: str, widest: fl
         geopandas.GeoDataFrame(geometry=lines[1:] + NEW_WAYS),
         widest,
     )
-    frame, wanted = renderer.render(), prepared(expected, antialias).render()
+    frame, wanted = renderer.render(), prepared(expected, antialias, index=index).render()
     rows = {0: np.array([*kept, 40, 41]), 1: np.arange(1, 32)}
     assert_close(frame, wanted, rows)
     assert picks(frame) == [
@@ -73,10 +74,11 @@ def test_an_edited_picture_is_that_of_the_edited_data(antialias: str, widest: fl
     ]
 
 
-def test_many_edits_in_a_row_and_back() -> None:
+@INDEXES
+def test_many_edits_in_a_row_and_back(index: str) -> None:
     """Through the growth and the compaction of the lists, every picture is right."""
     areas, ways = some_areas(), some_ways()
-    renderer = prepared(scene_of(areas, ways))
+    renderer = prepared(scene_of(areas, ways), index=index)
     first = renderer.render()
     image, ids = first.image.copy(), first.ids.copy()
     shapes = list(areas.geometry)
@@ -87,7 +89,7 @@ def test_many_edits_in_a_row_and_back() -> None:
         renderer.edit("areas", move={row: tuple(shift)})
         shapes[row] = affinity.translate(shapes[row], *shift)
         if step % 20 == 7:
-            expected = prepared(scene_of(geopandas.GeoDataFrame(geometry=shapes), ways)).render()
+            expected = prepared(scene_of(geopandas.GeoDataFrame(geometry=shapes), ways), index=index).render()
             assert_close(renderer.render(), expected)
     renderer.edit("areas", replace=dict(enumerate(areas.geometry)))
     assert_close(renderer.render(), first)
@@ -95,9 +97,10 @@ def test_many_edits_in_a_row_and_back() -> None:
     np.testing.assert_array_equal(first.ids, ids)
 
 
+@INDEXES
 @BOTH
-def test_nothing_changes_elsewhere(antialias: str) -> None:
-    renderer = prepared(scene_of(some_areas(), some_ways()), antialias)
+def test_nothing_changes_elsewhere(antialias: str, index: str) -> None:
+    renderer = prepared(scene_of(some_areas(), some_ways()), antialias, index=index)
     renderer.update(MAP)
     before = renderer.render()
     renderer.edit("areas", add=[box(70, 70, 80, 80)], color="red")
@@ -127,14 +130,15 @@ def test_a_far_view_is_edited_too(antialias: str) -> None:
     assert np.abs(renderer.render().image.astype(int) - expected.render().image).max() <= 2
 
 
-def test_frames_of_before_stay_right() -> None:
-    renderer = prepared(scene_of(some_areas(), some_ways()))
-    expected = prepared(scene_of(some_areas(), some_ways())).render()
+@INDEXES
+def test_frames_of_before_stay_right(index: str) -> None:
+    renderer = prepared(scene_of(some_areas(), some_ways()), index=index)
+    expected = prepared(scene_of(some_areas(), some_ways()), index=index).render()
     frame = renderer.render()
     renderer.edit("areas", remove=list(range(30)), add=NEW_AREAS)
     renderer.edit("ways", remove=list(range(30)))
     between = renderer.render()
-    seen = picks(prepared(scene_of(some_areas(), some_ways())).render())
+    seen = picks(prepared(scene_of(some_areas(), some_ways()), index=index).render())
     renderer.edit("areas", remove=list(range(30, 42)))
     assert (renderer.render().ids == -1).all()
     np.testing.assert_array_equal(frame.ids, expected.ids)
@@ -142,9 +146,10 @@ def test_frames_of_before_stay_right() -> None:
     assert (between.ids >= 30).any()
 
 
-def test_edits_restyles_and_lenses_add_up() -> None:
+@INDEXES
+def test_edits_restyles_and_lenses_add_up(index: str) -> None:
     areas, ways = some_areas(), some_ways()
-    renderer = prepared(scene_of(areas, ways, widest=6.0, column="kind", cmap="Set1"))
+    renderer = prepared(scene_of(areas, ways, widest=6.0, column="kind", cmap="Set1"), index=index)
     renderer.restyle("areas", opacity={"a": 0.5}, visible="kind != 'b'")
     renderer.lens = dg.Lens(circle=(50, 50, 30), styles={"areas": {"visible": True}}, hidden=("ways",))
     more = geopandas.GeoDataFrame({"kind": ["a", "b"]}, geometry=NEW_AREAS)
@@ -158,7 +163,7 @@ def test_edits_restyles_and_lenses_add_up() -> None:
         {"kind": [*areas["kind"], "a", "b"], "number": range(42)}, geometry=[*areas.geometry, *NEW_AREAS]
     )
     lines = geopandas.GeoDataFrame(geometry=[*ways.geometry, *NEW_WAYS])
-    expected = prepared(scene_of(both, lines, widest=6.0, column="kind", cmap="Set2"))
+    expected = prepared(scene_of(both, lines, widest=6.0, column="kind", cmap="Set2"), index=index)
     expected.restyle("areas", order="size", opacity={"a": 0.5}, where=np.arange(42) < 40)
     expected.restyle("areas", visible="kind != 'b' or number >= 40")
     expected.restyle("ways", width=[0.5] * 31 + [4.0], color=["navy"] * 30 + ["green"] * 2)
@@ -219,15 +224,54 @@ def test_a_layer_of_several_colours_says_what_it_needs() -> None:
         renderer.edit("areas", add=NEW_AREAS)
 
 
-def test_saved_scenes_and_published_structures_say_that_they_cannot(tmp_path: Path) -> None:
+def test_scenes_from_files_are_edited_where_the_data_is_there(tmp_path: Path) -> None:
     scene = scene_of(some_areas(), some_ways())
     prepared(scene).save(tmp_path / "map.decal")
-    opened = dg.Renderer(SIZE)
+    opened = dg.Renderer(SIZE, "none")
     opened.open(tmp_path / "map.decal")
     with pytest.raises(dg.UnsupportedError, match="from its data"):
         opened.edit("areas", remove=1)
-    with pytest.raises(dg.UnsupportedError, match="index 'grid'"):
-        prepared(scene, index="bvh").edit("areas", remove=1)
+    opened.preprocess(scene, cache=tmp_path / "map.decal")
+    opened.update(OBLIQUE)
+    expected = prepared(scene)
+    assert "open" in opened.render().stats.preprocess
+    for renderer in (opened, expected):
+        renderer.edit("areas", add=NEW_AREAS, move={5: (10.0, -4.0)}, remove=3)
+    np.testing.assert_array_equal(opened.render().image, expected.render().image)
+    assert picks(opened.render()) == picks(expected.render())
+
+
+OUTLINED: dict[str, dict[str, Any]] = {
+    "over all": {},
+    "over each": {"order": "feature"},
+    "inset": {"mode": "inset"},
+    "mitred": {"corner": "miter", "dash": (5, 3)},
+}
+
+
+@pytest.mark.parametrize(
+    "index", ["grid", "bvh", dg.BvhIndex(cells=20, passes="kind", segment_order="hilbert")]
+)
+@pytest.mark.parametrize("name", OUTLINED)
+def test_outlined_polygons_are_edited(name: str, index: str | dg.BvhIndex) -> None:
+    """New ones lie outside of all others, and above them."""
+    outline = dg.Outline(width=3, width_units="m", color="navy", **OUTLINED[name])
+    areas = [box(30, 30, 50, 50), box(40, 40, 60, 60), box(45, 20, 65, 45)]
+    new = [box(55, 10, 95, 35), box(5, 5, 35, 35)]
+
+    def scene(shapes: list[Any]) -> dg.Scene:
+        scene = hilly_scene()
+        # Another technique below: layers are counted from the scene's first.
+        scene.add_lines([LineString([(0, 50), (100, 60)])], color="red", width=2)
+        scene.add_polygons(shapes, color="tan", outline=outline, name="areas")
+        return scene
+
+    renderer = prepared(scene(areas), index=index)
+    renderer.render()
+    renderer.edit("areas", add=new, replace={0: box(20, 35, 55, 70)})
+    expected = prepared(scene([box(20, 35, 55, 70), *areas[1:], *new]), index=index).render()
+    assert_close(renderer.render(), expected)
+    assert picks(renderer.render()) == picks(expected)
 
 
 def test_an_edited_scene_can_be_saved(tmp_path: Path) -> None:

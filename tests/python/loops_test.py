@@ -17,6 +17,7 @@ import judge
 import rounding
 import scenes
 import shapes
+from decalgl.bench import topology
 from decalgl.features import read_features
 from decalgl.loops import NAMED_BVHS
 from scenes import View
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     FloatArray = NDArray[np.float64]
-    IntArray = NDArray[np.int64]
 
 FULL = dg.Loops(detail=dg.Detail(screen=None, uniform=0.0))
 EVERYTHING = [
@@ -133,7 +133,9 @@ def varied_scene(technique: str | dg.Technique) -> dg.Scene:
     return scene
 
 
-@pytest.mark.parametrize("bvh", [*NAMED_BVHS, dg.LoopsBvh((9, 4), 10, (3, 2), (4, 9, 4), 1, 0.5)], ids=str)
+@pytest.mark.parametrize(
+    "bvh", [None, *NAMED_BVHS, dg.LoopsBvh((9, 4), 10, (3, 2), (4, 9, 4), 1, 0.5)], ids=str
+)
 def test_every_index_draws_the_same(bvh: Any) -> None:
     static = draw(varied_scene("static"))
     frame = draw(varied_scene(dg.Loops(bvh=bvh, detail=FULL.detail)))
@@ -153,7 +155,7 @@ def test_segments_draw_what_triangles_do_with_twice_as_many() -> None:
                 [LineString(walk) for walk in walks],
                 width=0.5,
                 width_units="m",
-                technique=dg.Loops(primitives=primitives, detail=detail),
+                technique=dg.Loops(primitives=primitives, bvh="fitted", detail=detail),
             )
             frames[primitives, screen] = draw(scene)
     for screen in (0.0, 3.0):
@@ -171,6 +173,44 @@ def test_pick_lists_what_lies_there_at_full_detail() -> None:
         for y in range(0, 100, 7):
             expected = [(picked.layer.index, picked.row) for picked in static.pick(x, y)]
             assert [(picked.layer.index, picked.row) for picked in frame.pick(x, y)] == expected
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        {"color": "red", "opacity": 0.5},
+        {"visible": [i % 3 > 0 for i in range(25)]},
+        {"order": [float(i * 7 % 25) for i in range(25)]},
+        {"outline": {"color": "blue"}},
+    ],
+    ids=lambda look: next(iter(look)),
+)
+def test_looks_change_without_preparing(look: dict[str, Any]) -> None:
+    frames = {}
+    for technique in ("static", FULL):
+        drawn = dg.Renderer(size=SIZE, antialias="none")
+        scene = varied_scene(technique)
+        drawn.preprocess(scene)
+        drawn.update(MAP)
+        before = drawn.render().image.copy()
+        drawn.restyle(0, **look)
+        frames[technique] = drawn.render()
+        assert (frames[technique].image != before).any()
+    static, loops = frames.values()
+    np.testing.assert_array_equal(loops.ids, static.ids)
+    assert np.abs(loops.image.astype(int) - static.image).max() <= 2
+
+
+def test_cells_hold_what_is_in_the_picture() -> None:
+    drawn, _ = prepared(dg.Loops())
+    counts = drawn.render().stats.counts
+    near = dg.Camera.top_down((40.0, 40.0, 60.0, 60.0))
+    drawn.update(near)
+    seen = drawn.render().stats.counts
+    # What is out of the picture is not among them.
+    assert seen["loops_references"] < 0.5 * counts["loops_references"]
+    drawn.update(MAP)
+    assert drawn.render().stats.counts["loops_references"] == counts["loops_references"]
 
 
 # Levels of detail by place
@@ -191,14 +231,18 @@ def set_detail(drawn: dg.Renderer, layer: dg.Layer, detail: dg.Detail) -> None:
     drawn.restyle(layer, technique=dataclasses.replace(layer.technique, detail=detail))
 
 
-def test_detail_changes_without_preparing() -> None:
-    drawn, layer = prepared(FULL)
+@pytest.mark.parametrize("bvh", [None, "fitted"])
+def test_detail_changes_without_preparing(bvh: str | None) -> None:
+    drawn, layer = prepared(dataclasses.replace(FULL, bvh=bvh))
     full = drawn.render()
     before, ids = full.image.copy(), full.ids.copy()
     set_detail(drawn, layer, dg.Detail(screen=None, uniform=2.0))
     coarse = drawn.render()
     assert (coarse.ids != ids).any()
-    assert coarse.stats.bytes == full.stats.bytes  # nothing new was uploaded
+    if bvh is not None:
+        assert coarse.stats.bytes == full.stats.bytes  # nothing new was uploaded
+    else:
+        assert coarse.stats.counts["loops_primitives"] < 0.5 * full.stats.counts["loops_primitives"]
     set_detail(drawn, layer, FULL.detail)
     again = drawn.render()
     np.testing.assert_array_equal(again.image, before)
@@ -242,7 +286,7 @@ def test_details_by_distance_and_a_second_camera() -> None:
 
 
 def test_heat_maps_count_primitives() -> None:
-    drawn, layer = prepared(FULL)
+    drawn, layer = prepared(dataclasses.replace(FULL, bvh="fitted"))
     heat = {}
     for shows in ("tested", "active"):
         for uniform in (0.0, 3.0):
@@ -259,31 +303,6 @@ def test_heat_maps_count_primitives() -> None:
 # Topology
 
 
-def edges_of(coords: FloatArray, parts: IntArray) -> FloatArray:
-    """The distinct edges (n, 4) of rings, each from its lower end."""
-    sizes = np.diff(parts)
-    following = np.arange(1, len(coords) + 1)
-    following[parts[1:][sizes > 0] - 1] = parts[:-1][sizes > 0]
-    a, b = coords, coords[following]
-    swap = (a[:, 0] > b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] > b[:, 1]))
-    edges = np.where(swap[:, None], np.column_stack([b, a]), np.column_stack([a, b]))
-    return edges[(edges[:, :2] != edges[:, 2:]).any(axis=1)]
-
-
-def count_crossings(edges: FloatArray) -> int:
-    """Pairs of distinct edges that meet anywhere but at a common end."""
-    distinct = np.unique(edges, axis=0)
-    lines = shapely.linestrings(distinct.reshape(-1, 2, 2))
-    first, second = shapely.STRtree(lines).query(lines, predicate="intersects")
-    first, second = first[first < second], second[first < second]
-    common = np.zeros(len(first), dtype=np.bool_)
-    for p in (distinct[first, :2], distinct[first, 2:]):
-        for q in (distinct[second, :2], distinct[second, 2:]):
-            common |= (p == q).all(axis=1)
-    along = shapely.length(shapely.intersection(lines[first[common]], lines[second[common]])) > 1e-6
-    return int((~common).sum() + along.sum())
-
-
 @functools.cache
 def land_cover() -> Any:
     """Real land cover of a part of Honolulu, every border of which is shared."""
@@ -291,37 +310,26 @@ def land_cover() -> Any:
     return layer.features
 
 
-@pytest.mark.parametrize("order", ["douglas_peucker", "wang_mueller", "visvalingam_whyatt"])
-def test_real_borders_neither_cross_nor_open(order: str) -> None:
-    features = land_cover()
-    levels = 50 if order == "douglas_peucker" else 6
-    tolerances = [-1.0, *np.geomspace(1.0, 20000.0, levels)]
-    before, outer = None, 0.0
-    fewest = 1.0
-    for coords, parts, _ in dg.Loops(order=order).simplified(features, tolerances):
-        edges = edges_of(coords, parts)
-        if before is None:
-            before, whole = count_crossings(edges), len(edges)
-            rim = odd_edges(edges)
-            outer = shapely.length(shapely.multilinestrings(rim.reshape(-1, 2, 2).tolist()))
-        else:
-            # Fewer levels by shapely where there is more to look at.
-            if len(edges) < 60000 or levels == 6:
-                assert count_crossings(edges) <= before
-        # What bounds one feature and not two is the rim of the map: no border came apart.
-        assert (
-            shapely.length(shapely.multilinestrings(odd_edges(edges).reshape(-1, 2, 2).tolist()))
-            <= outer * 1.001
-        )
-        fewest = min(fewest, len(edges) / whole)
-    assert fewest < 0.2
+@pytest.mark.parametrize(
+    ("order", "levels"), [("douglas_peucker", 10), ("wang_mueller", 4), ("visvalingam_whyatt", 4)]
+)
+def test_real_borders_neither_cross_nor_open(order: str, levels: int) -> None:
+    tolerances = list(np.geomspace(2.0, 20000.0, levels))
+    counts = list(topology.counts_of(land_cover(), order, tolerances))
+    assert [(each.crossings, each.openings) for each in counts] == [(0, 0)] * (levels + 1)
+    assert counts[-1].edges < 0.2 * counts[0].edges
 
 
-def odd_edges(edges: FloatArray) -> FloatArray:
-    """Those that are there an odd number of times."""
-    distinct, counts = np.unique(edges, axis=0, return_counts=True)
-    odd: FloatArray = distinct[counts % 2 == 1]
-    return odd
+def test_crossings_and_openings_are_counted() -> None:
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+    beside = np.array([[4.0, 0.0], [8.0, 0.0], [8.0, 4.0], [4.0, 4.0], [4.0, 2.0]])
+    edges = topology.edges_of(np.concatenate([square, beside]), np.array([0, 4, 9]))
+    rim = topology.odd_edges(topology.edges_of(np.concatenate([square, beside[:4]]), np.array([0, 4, 8])))
+    # One side is split and the other is not: it is open there, and lies along it.
+    assert topology.count_openings(edges, rim.reshape(-1, 2)) == 2
+    assert topology.count_crossings(edges) == 2
+    crossing = np.array([[0.0, 0.0, 2.0, 2.0], [0.0, 2.0, 2.0, 0.0], [2.0, 0.0, 2.0, 2.0]])
+    assert topology.count_crossings(crossing) == 1
 
 
 def test_partitions_stay_partitions() -> None:
@@ -401,12 +409,12 @@ def test_what_it_does_not_draw_is_refused() -> None:
     with pytest.raises(dg.UnsupportedError, match="dashes"):
         draw(scene)
     scene = flat_scene()
-    layer = scene.add_polygons([box(10, 10, 50, 50)], technique="loops")
+    layer = scene.add_polygons([box(10, 10, 50, 50)], technique=dg.Loops(bvh="fitted"))
     other = scene.add_polygons([box(20, 20, 30, 30)], name="other", technique="static")
     drawn = dg.Renderer(size=SIZE, antialias="none")
     drawn.preprocess(scene)
-    with pytest.raises(dg.UnsupportedError, match="static"):
-        drawn.restyle(layer, color="red")
+    with pytest.raises(dg.UnsupportedError, match="bvh=None"):
+        drawn.restyle(layer, order=[0.0])
     with pytest.raises(dg.StyleError, match="the layer's own"):
         drawn.restyle(other, technique=dg.Loops())
     with pytest.raises(dg.StyleError, match="detail alone"):

@@ -95,3 +95,24 @@ def test_the_nearest_line_covers_by_the_formula() -> None:
     only[row] = coverage[row]
     assert (only > 0.0).any(axis=1).sum() > 1000
     assert np.abs(got - over_each_other(only, colors)).max() <= STEPS / 255
+
+
+def test_a_pixel_of_many_lines_shows_the_topmost() -> None:
+    """20,000 lines in 3,600 cells of one pixel, of which the last cells hold the topmost."""
+    count = 20_000
+    middles = np.random.default_rng(0).uniform(0.0, 99.0, (count, 1, 2))
+    ends = np.concatenate([middles, middles + 0.4], axis=1)
+    ends[-1] = [[1.0, 99.0], [99.9, 99.0]]
+    offsets = np.arange(count + 1)
+    lines = dg.FeatureTable("lines", ends.reshape(-1, 2), 2 * offsets, offsets, offsets[:-1])
+    widths = np.full(count, 0.05)
+    widths[-1] = 2.0
+    scene = flat_scene()
+    scene.add_lines(lines, width=widths, width_units="m", color=["blue"] * (count - 1) + ["red"])
+    camera = dg.Camera.top_down((0.0, 0.0, 100.0, 100.0))
+    index = dg.BvhIndex(cells=60)
+    seen = scene.render(camera, (1, 1), index=index, coverage="thoeny").image[0, 0].astype(int)
+    ground = flat_scene().render(camera, (1, 1)).image[0, 0].astype(int)
+    # Two in a hundred of the pixel are red.
+    assert np.abs(seen[1:3] - 0.98 * ground[1:3]).max() <= STEPS
+    assert seen[1] <= ground[1] - 3

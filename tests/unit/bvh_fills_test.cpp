@@ -102,11 +102,12 @@ TEST_CASE("a culling offset is the smallest subtree with the cell's part of the 
     }
     const auto bvh = build({polygons({{ring}})}, with_cells(50));
     const DecalGroup& group = bvh->groups.front();
-    const QuadTrees& quads = group.quads;
+    const QuadTreesOf<GrownArray>& quads = group.quads;
     int below_root = 0;
     for (uint32_t cell = 0; cell < group.grid.cell_count(); ++cell) {
         const LatticeBox part = common(group.grid.cell_box(cell), quads.boxes[0]);
-        for (uint32_t i = group.cells[cell].object; i < group.cells[cell + 1].object; ++i) {
+        const CellStart start = group.cells[cell];
+        for (uint32_t i = start.object; i < start.object + start.count; ++i) {
             const uint32_t subtree = group.exteriors[i].subtree;
             below_root += subtree != 0;
             REQUIRE(quads.boxes[subtree].holds(part));

@@ -161,8 +161,8 @@ inline std::vector<bool> found_at(const PreparedBvh& bvh, size_t features, Posit
 // Boxes lie in their parents', and objects follow in draw order.
 inline bool well_formed_cell(const PreparedBvh& bvh, const DecalGroup& group, uint32_t cell) {
     const CellStart start = group.cells[cell];
-    const uint32_t objects = group.objects_in(cell), stored = stored_nodes(objects);
-    bool good = group.cells[cell + 1].node == start.node + stored;
+    const uint32_t objects = start.count, stored = stored_nodes(objects);
+    bool good = start.node + stored <= group.nodes.size();
     for (uint32_t node = 2; node <= stored; ++node) {
         const LatticeBox& box = group.nodes[start.node + node - 1];
         good &= box.empty() || group.nodes[start.node + node / 2 - 1].holds(box);
@@ -172,8 +172,9 @@ inline bool well_formed_cell(const PreparedBvh& bvh, const DecalGroup& group, ui
     uint32_t previous = 0;
     for (uint32_t i = start.object; i < start.object + objects; ++i) {
         const uint32_t slot = group.slot_of(group.object(i));
-        good &= slot < group.styles.size() && (!in_order || slot >= previous);
-        previous = slot;
+        const uint32_t rank = slot < group.styles.size() ? group.styles[slot].rank : 0;
+        good &= slot < group.styles.size() && (!in_order || rank >= previous);
+        previous = rank;
     }
     return good;
 }
@@ -183,7 +184,7 @@ inline int64_t points_in(const LatticeBox& box) {
 }
 
 // Children share a node's points among them; leaves have their edges, and those their rows in the leaf.
-inline bool well_formed_node(const QuadTrees& quads, size_t node) {
+inline bool well_formed_node(const QuadTreesOf<GrownArray>& quads, size_t node) {
     const QuadLink link = quads.links[node];
     const LatticeBox& box = quads.boxes[node];
     bool good = true;
@@ -203,6 +204,13 @@ inline bool well_formed_node(const QuadTrees& quads, size_t node) {
         }
     }
     return good;
+}
+
+inline size_t count_of_slots(const PreparedBvh& bvh) {
+    size_t count = 0;
+    for (const DecalGroup& group : bvh.groups)
+        count += group.slots.size();
+    return count;
 }
 
 inline void require_well_formed(const PreparedBvh& bvh) {

@@ -152,7 +152,7 @@ TEST_CASE("fills and outlines go together where they must, and a feature is foun
     CHECK((bvh->groups[0].kind == GroupKind::both) == together);
     CHECK(bvh->counts().features == 2);
     CHECK(bvh->counts().segments == 8);
-    CHECK(bvh->slots.size() == 4);
+    CHECK(count_of_slots(*bvh) == 4);
     const std::vector<FeatureReference> found = bvh->query({1102, 2150});
     CHECK(found == std::vector<FeatureReference>{{0, 1}, {0, 0}});
 }

@@ -1,11 +1,16 @@
-// Pixels picked out of a picture, in a texture of their own: a block of 4 x 4 texels for each, one for each sample.
+// Pixels picked out of a picture, in a texture of their own: a block of 8 x 8 texels for each, one for each of the 64
+// samples of its area (area_samples.h).
 //
 //     k = 0   k = 1   ...
 //     s s s s s s s s
 //     s s s s s s s s        sample s of a pixel lies at gathered_offsets[s]
-//     s s s s s s s s
-//     s s s s s s s s
+//
+// RAYS   blocks of 4 x 4 instead, one texel for each ray: what four samples lie on
+#ifdef RAYS
 const int gathered_side = 4;
+#else
+const int gathered_side = 8;
+#endif
 const int gathered_samples = gathered_side * gathered_side;
 
 uniform usamplerBuffer gathered_pixels;  // x | y << 16, in the rectangle that is drawn

@@ -1,4 +1,4 @@
-// The G-buffer of samples of pixels through which a silhouette passes.
+// What sixteen rays of each gathered pixel meet.
 //
 // What a sample sees lies near what the pixel or a neighbour sees at its centre. So its ray is followed for a few cells
 // around the nearest of those places, then around the nearest of those that lie behind, and so on. Where it meets
@@ -7,6 +7,7 @@
 //
 // RAMP   colours by height
 #define GATHERED 1
+#define RAYS 1
 #include "terrain/march.glsl"
 
 uniform sampler2D surface_texture;  // at the pixels' centres

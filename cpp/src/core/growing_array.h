@@ -25,7 +25,6 @@ class GrowingArray {
 public:
     GrowingArray() = default;
 
-    bool empty() const { return storage_ == nullptr; }
     SharedArray<T> values() const { return {Span<const T>(storage_->room.data(), size_), storage_}; }
     // Where the values lie that its first ones were copied from.
     const T* origin() const { return storage_ ? storage_->origin : nullptr; }
@@ -64,6 +63,44 @@ private:
 
     std::shared_ptr<Storage> storage_;
     std::size_t size_ = 0;
+};
+
+// Shared values that may be continued: copies go on with what they had.
+template <typename T>
+class GrownArray {
+public:
+    using value_type = T;
+
+    GrownArray() = default;
+    GrownArray(SharedArray<T> values) : values_(std::move(values)) {}
+    template <typename Allocator>
+    GrownArray(std::vector<T, Allocator> values) : values_(std::move(values)) {}
+
+    void append(Span<const T> more, const MemoryAccount& memory, const std::string& name) {
+        if (more.empty())
+            return;
+        growing_ = growing_.appended(values_, more, memory, name);
+        values_ = growing_.values();
+    }
+
+    const SharedArray<T>& values() const { return values_; }
+    // Where the values lie that its first ones were copied from.
+    const T* origin() const { return growing_.origin(); }
+    Span<const T> span() const noexcept { return values_.span(); }
+    operator Span<const T>() const noexcept { return values_.span(); }
+    const T* data() const noexcept { return values_.data(); }
+    std::size_t size() const noexcept { return values_.size(); }
+    std::size_t size_bytes() const noexcept { return values_.size_bytes(); }
+    bool empty() const noexcept { return values_.empty(); }
+    const T* begin() const noexcept { return values_.begin(); }
+    const T* end() const noexcept { return values_.end(); }
+    const T& operator[](std::size_t index) const { return values_[index]; }
+
+    friend bool operator==(const GrownArray& a, const GrownArray& b) { return a.values_ == b.values_; }
+
+private:
+    SharedArray<T> values_;
+    GrowingArray<T> growing_;
 };
 
 // An array whose bytes are counted for as long as anyone holds it.

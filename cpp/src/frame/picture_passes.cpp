@@ -208,7 +208,9 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
     std::vector<uint32_t> pixels;
     {
         const gl::PassTimer timer(&timings_, "silhouettes");
-        pixels = silhouettes_->find(targets_->seen.gbuffer, piece.drawn, piece.shown, programs_);
+        pixels =
+            silhouettes_->find(targets_->seen.gbuffer, shows_layers() ? &targets_->seen.overlay : nullptr,
+                               piece.drawn, piece.shown, programs_);
     }
     silhouette_pixels_ += pixels.size();
     for (size_t first = 0; first < pixels.size(); first += Silhouettes::batch_size) {
@@ -226,24 +228,31 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
     }
 }
 
+void Pipeline::follow_rays(const Piece& piece) {
+    const gl::PassTimer timer(&timings_, "gathered");
+    const LowerRows used(silhouettes_->ray_columns(), silhouettes_->ray_rows());
+    gl::Program& program = programs_.get("gathered", terrain_->ray_flags());
+    silhouettes_->rays().framebuffer.bind();
+    program.use();
+    terrain_->set_for_rays(program);
+    silhouettes_->set_rays(program);
+    program.set("surface_texture", 4);
+    targets_->seen.gbuffer.surface.bind(4);
+    program.set("drawn_size", glm::ivec2(piece.drawn.width, piece.drawn.height));
+    program.set("no_distance", std::numeric_limits<float>::infinity());
+    draw_full_screen();
+}
+
 // The colours of some pixels, each the mean of its samples.
 std::vector<uint8_t> Pipeline::draw_gathered(const Piece& piece, Span<const uint32_t> pixels) {
     silhouettes_->gather(pixels);
-    const SeenTargets& seen = silhouettes_->seen();
-    const LowerRows used(seen.gbuffer.width(), silhouettes_->used_rows());
+    follow_rays(piece);
+    const LowerRows used(silhouettes_->sample_columns(), silhouettes_->sample_rows());
     {
-        const gl::PassTimer timer(&timings_, "gathered");
-        gl::Program& program = programs_.get("gathered", terrain_->ray_flags());
-        seen.gbuffer.framebuffer.bind();
-        program.use();
-        terrain_->set_for_rays(program);
-        silhouettes_->set_gathered(program);
-        program.set("surface_texture", 4);
-        targets_->seen.gbuffer.surface.bind(4);
-        program.set("drawn_size", glm::ivec2(piece.drawn.width, piece.drawn.height));
-        program.set("no_distance", std::numeric_limits<float>::infinity());
-        draw_full_screen();
+        const gl::PassTimer timer(&timings_, "spread");
+        silhouettes_->spread(programs_);
     }
+    const SeenTargets& seen = silhouettes_->seen();
     draw_overlay(seen, Antialias::none);
     compose(seen, silhouettes_->composed(), {"SAMPLE", "GATHERED"});
     const gl::PassTimer timer(&timings_, "readback");

@@ -274,6 +274,8 @@ std::shared_ptr<PreparedScene> prepare_cached(const Scene& scene, const std::str
         const Stopwatch saving;
         save_scene(*prepared, cache, threads, Progress(progress, "saving"));
         prepared->timings.add("save", saving.milliseconds());
+    } else {
+        take_sources(scene, options, memory, *prepared);
     }
     prepared->timings.add("fingerprint", fingerprint_ms);
     prepared->milliseconds = watch.milliseconds();

@@ -99,13 +99,10 @@ std::vector<LayerPart> parts_of(const std::vector<Layer>& layers) {
     return parts;
 }
 
-void prepare_layers(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
-                    Progress progress, PreparedScene& prepared) {
-    const bool has_ground = scene.terrain.rows() > 1 && scene.terrain.columns() > 1;
-    if (scene.layers.empty() || !has_ground)
-        return;
-    for (const Layer& layer : scene.layers)
-        validate_reach(layer, prepared.terrain.bounds());
+// Calls on_run(technique, input) for each run of layers that one technique draws.
+template <typename OnRun>
+void for_each_run(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
+                  const PreparedScene& prepared, OnRun on_run) {
     TechniqueInput input;
     input.terrain = &prepared.terrain;
     input.bounds = prepared.terrain.bounds();
@@ -124,8 +121,21 @@ void prepare_layers(const Scene& scene, const RendererOptions& options, const Me
         input.first_layer = parts[begin].place;
         const std::string technique =
             choice.name == "static" && options.index == "bvh" ? "static_bvh" : choice.name;
-        prepare_pass(technique, input, progress, prepared);
+        on_run(technique, input);
     }
+}
+
+void prepare_layers(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
+                    Progress progress, PreparedScene& prepared) {
+    const bool has_ground = scene.terrain.rows() > 1 && scene.terrain.columns() > 1;
+    if (scene.layers.empty() || !has_ground)
+        return;
+    for (const Layer& layer : scene.layers)
+        validate_reach(layer, prepared.terrain.bounds());
+    for_each_run(scene, options, memory, prepared,
+                 [&](const std::string& technique, const TechniqueInput& input) {
+                     prepare_pass(technique, input, progress, prepared);
+                 });
 }
 
 }  // namespace
@@ -153,6 +163,17 @@ void validate(const Relief& relief) {
     if (relief.ramp.size() % 3 != 0 || relief.ramp.size() > 3 * longest_ramp)
         throw Error(ErrorKind::input, "relief: the ramp must be red, green and blue of at most " +
                                           std::to_string(longest_ramp) + " colours");
+}
+
+void take_sources(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
+                  PreparedScene& opened) {
+    for_each_run(scene, options, memory, opened,
+                 [&](const std::string& technique, const TechniqueInput& input) {
+                     for (PreparedPass& pass : opened.passes)
+                         if (pass.technique == technique && pass.first_layer == input.first_layer)
+                             if (auto with_sources = pass.prepared->with_sources(input))
+                                 pass.prepared = std::move(with_sources);
+                 });
 }
 
 std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, const RendererOptions& options,

@@ -63,6 +63,10 @@ Heightfield drawn_terrain(const Scene& scene);
 void validate(const Heightfield& terrain);
 void validate(const Relief& relief);
 
+// Gives the index of a scene that was opened what it was made of, for later edits.
+void take_sources(const Scene& scene, const RendererOptions& options, const MemoryAccount& memory,
+                  PreparedScene& opened);
+
 // Validates and prepares. Throws Error(input), Error(memory), Error(cancelled).
 std::shared_ptr<PreparedScene> prepare_scene(const Scene& scene, const RendererOptions& options,
                                              const MemoryAccount& memory, const ProgressFn& progress);

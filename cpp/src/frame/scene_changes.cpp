@@ -66,12 +66,19 @@ void append(const DecalLook& added, size_t count, size_t features, DecalLook& lo
     if (look.widths.size() == features && !added.widths.empty())
         for (size_t i = 0; i < count; ++i)
             look.widths.push_back(added.width(i));
+    // Whatever else their styles are is that of the layer's first feature.
+    for (std::vector<uint32_t>* places : {&look.style_of, &look.hatch_of})
+        if (places->size() == features)
+            places->resize(features + count, places->front());
 }
 
 void append(const LayerEdit& edit, size_t features, LayerLook& look) {
     append(edit.fill, edit.added_count(), features, look.fill);
     append(edit.stroke, edit.added_count(), features, look.stroke);
     append(edit.casing, edit.added_count(), features, look.casing);
+    if (!look.draw_order.empty())
+        for (size_t i = 0; i < edit.added_count(); ++i)
+            look.draw_order.push_back(static_cast<int64_t>(features + i));
 }
 
 void look_through_lens(PreparedScene& scene, const MemoryAccount& memory) {
@@ -136,11 +143,6 @@ std::shared_ptr<const PreparedScene> scene_with_lens(const PreparedScene& scene,
     if (lens)
         validate(*lens);
     require_layers(scene, looks);
-    const bool reorders = std::any_of(looks.begin(), looks.end(),
-                                      [](const LayerLook& look) { return !look.draw_order.empty(); });
-    if (reorders)
-        throw Error(ErrorKind::unsupported,
-                    "the draw order inside a lens is that of the whole picture; restyle the layer instead");
     auto changed = std::make_shared<PreparedScene>(scene);
     changed->lens = std::move(lens);
     changed->lens_looks = std::move(looks);

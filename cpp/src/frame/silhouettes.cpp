@@ -2,15 +2,51 @@
 
 #include "frame/sample_pattern.h"
 #include "gl/readback.h"
+#include "shared/area_samples.h"
 
 namespace decalgl {
 namespace {
 
-constexpr int samples = 16;  // shaders/shared/gathered.glsl
-constexpr int side = 4;
+// Texels of a pixel from side to side: shaders/shared/gathered.glsl.
+constexpr int ray_side = 4;
+constexpr int sample_side = 8;
 constexpr int columns = 256;  // pixels in a row of a batch
 constexpr int rows = static_cast<int>(Silhouettes::batch_size) / columns;
 constexpr GLuint pixels_unit = 7;
+
+using Offsets = std::vector<glm::vec2>;
+
+const Offsets& ray_offsets() {
+    static const Offsets offsets = sample_pattern(ray_side * ray_side);
+    return offsets;
+}
+
+int sixteenth_of(glm::vec2 offset) {
+    const glm::ivec2 place(glm::floor((offset + 0.5F) * static_cast<float>(ray_side)));
+    return place.y * ray_side + place.x;
+}
+
+// In the order of the texels: four samples of a pixel's area are in each sixteenth of it and one ray, as both
+// patterns are nets, and share a block of 2 x 2.
+Offsets offsets_of_samples() {
+    constexpr glm::vec2 samples[] = {AREA_SAMPLE_OFFSETS(glm::vec2)};
+    Offsets offsets(sample_side * sample_side);
+    for (int ray = 0; ray < ray_side * ray_side; ++ray) {
+        int inside = 0;
+        for (const glm::vec2 sample : samples) {
+            if (sixteenth_of(sample) != sixteenth_of(ray_offsets()[static_cast<size_t>(ray)]))
+                continue;
+            const int x = 2 * (ray % ray_side) + inside % 2, y = 2 * (ray / ray_side) + inside / 2;
+            offsets[static_cast<size_t>(y * sample_side + x)] = sample;
+            ++inside;
+        }
+    }
+    return offsets;
+}
+
+void set_offsets(gl::Program& program, const char* name, const Offsets& offsets) {
+    program.set_array(name, Span<const glm::vec2>(offsets.data(), offsets.size()));
+}
 
 }  // namespace
 
@@ -21,13 +57,19 @@ Silhouettes::Silhouettes(int width, int height, bool has_overlay, const MemoryAc
       marks_(gl::Texture2D::create(memory, "silhouettes: marks", GL_R8, width, height)),
       marks_framebuffer_(gl::Framebuffer::create("marks", {{GL_COLOR_ATTACHMENT0, &marks_}})) {}
 
-std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const Rectangle& drawn,
-                                        const Rectangle& shown, gl::ProgramLibrary& programs) {
-    gl::Program& program = programs.get("silhouettes");
+std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay,
+                                        const Rectangle& drawn, const Rectangle& shown,
+                                        gl::ProgramLibrary& programs) {
+    gl::Program& program =
+        programs.get("silhouettes", overlay != nullptr ? gl::Flags{"OVERLAY"} : gl::Flags{});
     marks_framebuffer_.bind();
     program.use();
     program.set("surface_texture", 0);
     centres.surface.bind(0);
+    if (overlay != nullptr) {
+        program.set("overlay_texture", 1);
+        overlay->bind(1);
+    }
     program.set("drawn_size", glm::ivec2(drawn.width, drawn.height));
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -50,10 +92,10 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const Rectangle&
 }
 
 void Silhouettes::make_batch_targets() {
-    seen_ =
-        std::make_unique<SeenTargets>(side * columns, side * rows, has_overlay_, OverlayDepth::none, memory_);
-    composed_ =
-        gl::Texture2D::create(memory_, "silhouettes: composed", GL_RGBA8, side * columns, side * rows);
+    rays_ = GBuffer(ray_side * columns, ray_side * rows, memory_);
+    const int width = sample_side * columns, height = sample_side * rows;
+    seen_ = std::make_unique<SeenTargets>(width, height, has_overlay_, OverlayDepth::none, memory_);
+    composed_ = gl::Texture2D::create(memory_, "silhouettes: composed", GL_RGBA8, width, height);
     composed_framebuffer_ = gl::Framebuffer::create("silhouettes", {{GL_COLOR_ATTACHMENT0, &composed_}});
     means_ = gl::Texture2D::create(memory_, "silhouettes: means", GL_RGBA8, columns, rows);
     means_framebuffer_ = gl::Framebuffer::create("silhouettes' means", {{GL_COLOR_ATTACHMENT0, &means_}});
@@ -67,15 +109,56 @@ void Silhouettes::gather(Span<const uint32_t> pixels) {
 }
 
 int Silhouettes::used_rows() const {
-    return side * static_cast<int>((count_ + columns - 1) / columns);
+    return static_cast<int>((count_ + columns - 1) / columns);
 }
 
-void Silhouettes::set_gathered(gl::Program& program) const {
-    static const std::vector<glm::vec2> offsets = sample_pattern(samples);
+int Silhouettes::ray_columns() const {
+    return ray_side * columns;
+}
+
+int Silhouettes::ray_rows() const {
+    return ray_side * used_rows();
+}
+
+int Silhouettes::sample_columns() const {
+    return sample_side * columns;
+}
+
+int Silhouettes::sample_rows() const {
+    return sample_side * used_rows();
+}
+
+void Silhouettes::set_pixels(gl::Program& program) const {
     program.set("gathered_pixels", static_cast<int>(pixels_unit));
     pixels_.bind(pixels_unit);
     program.set("gathered_columns", columns);
-    program.set_array("gathered_offsets", Span<const glm::vec2>(offsets.data(), offsets.size()));
+}
+
+void Silhouettes::set_rays(gl::Program& program) const {
+    set_pixels(program);
+    set_offsets(program, "gathered_offsets", ray_offsets());
+}
+
+void Silhouettes::set_gathered(gl::Program& program) const {
+    static const Offsets offsets = offsets_of_samples();
+    set_pixels(program);
+    set_offsets(program, "gathered_offsets", offsets);
+}
+
+void Silhouettes::spread(gl::ProgramLibrary& programs) {
+    gl::Program& program = programs.get("spread");
+    seen_->gbuffer.framebuffer.bind();
+    program.use();
+    set_gathered(program);
+    set_offsets(program, "ray_offsets", ray_offsets());
+    program.set("ray_position_texture", 0);
+    rays_.position.bind(0);
+    program.set("ray_surface_texture", 1);
+    rays_.surface.bind(1);
+    program.set("ray_base_texture", 2);
+    rays_.base.bind(2);
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 std::vector<uint8_t> Silhouettes::means(gl::ProgramLibrary& programs) {
@@ -86,8 +169,8 @@ std::vector<uint8_t> Silhouettes::means(gl::ProgramLibrary& programs) {
     composed_.bind(0);
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    return gl::read_pixels<uint8_t>(means_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0, columns,
-                                    used_rows() / side, gl::transfer_format(GL_RGBA8), 4);
+    return gl::read_pixels<uint8_t>(means_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0, columns, used_rows(),
+                                    gl::transfer_format(GL_RGBA8), 4);
 }
 
 }  // namespace decalgl

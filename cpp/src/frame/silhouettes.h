@@ -1,7 +1,8 @@
-// Pixels through which a silhouette of the terrain passes, drawn anew as the mean of samples.
+// Pixels through which a silhouette of the terrain passes, or a crease beside a border of a feature, drawn anew as
+// the mean of samples.
 //
-//     G-buffer ─▶ marks ─▶ list ─▶ G-buffer of 16 texels a pixel ─▶ overlay ─▶ compose ─▶ means
-//                           CPU    by rays: terrain/gathered.frag.glsl
+//     G-buffer, overlay ─▶ marks ─▶ list ─▶ 16 rays a pixel ─▶ G-buffer of 64 texels a pixel ─▶ overlay ─▶ compose ─▶ means
+//                                   CPU     terrain/gathered   terrain/spread
 //
 // Such pixels are few, so what they see is gathered in textures of its own, batch after batch, and neither the
 // terrain's triangles nor the rest of the picture are touched again.
@@ -25,17 +26,25 @@ public:
     Silhouettes(int width, int height, bool has_overlay, const MemoryAccount& memory);
 
     // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
-    // that of the pixels' centres.
-    std::vector<uint32_t> find(const GBuffer& centres, const Rectangle& drawn, const Rectangle& shown,
-                               gl::ProgramLibrary& programs);
+    // that of the pixels' centres. overlay: none where no layer is shown.
+    std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, const Rectangle& drawn,
+                               const Rectangle& shown, gl::ProgramLibrary& programs);
 
-    static constexpr size_t batch_size = 32768;
+    static constexpr size_t batch_size = 8192;
     // Makes a batch of pixels the ones that programs with the flag GATHERED see.
     void gather(Span<const uint32_t> pixels);
     void set_gathered(gl::Program& program) const;
-    // The rows of texels that the batch fills.
-    int used_rows() const;
+    // The same for the program that follows the batch's rays, into `rays()`.
+    void set_rays(gl::Program& program) const;
+    // The samples on what the rays met, into `seen()`.
+    void spread(gl::ProgramLibrary& programs);
+    // The texels across, and the rows of them that the batch fills, of `rays()` and `seen()`.
+    int ray_columns() const;
+    int ray_rows() const;
+    int sample_columns() const;
+    int sample_rows() const;
 
+    const GBuffer& rays() const { return rays_; }
     const SeenTargets& seen() const { return *seen_; }
     const gl::Framebuffer& composed() const { return composed_framebuffer_; }
     // Of the batch's pixels, R, G, B, A with straight alpha, once it is composed.
@@ -43,6 +52,8 @@ public:
 
 private:
     void make_batch_targets();
+    int used_rows() const;  // of pixels
+    void set_pixels(gl::Program& program) const;
 
     MemoryAccount memory_;
     bool has_overlay_ = false;
@@ -51,7 +62,8 @@ private:
     gl::Framebuffer marks_framebuffer_;
     gl::TextureBuffer pixels_;
     size_t count_ = 0;
-    std::unique_ptr<SeenTargets> seen_;  // made when first needed
+    GBuffer rays_;  // made when first needed, as what follows
+    std::unique_ptr<SeenTargets> seen_;
     gl::Texture2D composed_;
     gl::Framebuffer composed_framebuffer_;
     gl::Texture2D means_;

@@ -17,6 +17,17 @@ void validate(const DecalLook& look, size_t features, const std::string& layer) 
     if (look.widths.size() > 1 && look.widths.size() != features)
         throw Error(ErrorKind::style, "layer '" + layer + "': needs one width, or one for each of its " +
                                           std::to_string(features) + " features");
+    const std::vector<uint8_t> any_color(4, 0);
+    if (!look.styles.empty()) {
+        Stroke stroke;
+        stroke.colors = any_color;
+        stroke.widths = {1.0};
+        stroke.styles = look.styles;
+        stroke.style_of = look.style_of;
+        decalgl::validate(stroke, features, layer);
+    }
+    if (!look.hatches.empty())
+        decalgl::validate(Fill{any_color, look.hatches, look.hatch_of}, features, layer);
     for (const double width : look.widths) {
         if (!(width >= 0.0 && std::isfinite(width)))
             throw Error(ErrorKind::style,

@@ -82,6 +82,7 @@ RATIOS = {
     "update_share": Ratio("{bins_update_ms:.0f} ms of {bins_ms:.0f} ms, bins"),
     "loops_detail": Ratio("half a pixel {half_ms:.1f} ms ÷ full detail {full_ms:.1f} ms"),
     "loops_static": Ratio("{half_ms:.1f} ms ÷ static {static_ms:.1f} ms"),
+    "loops_standing": Ratio("without making cells, ÷ static {static_ms:.1f} ms"),
     "loops_seg_primitives": Ratio("{loops_primitives:,.0f} primitives ÷ segments of all levels"),
     "loops_seg_bytes": Ratio("{loops_bytes:,.0f} bytes ÷ segments in the index of LOCALIS"),
     "loops_seg_time": Ratio("{loops_ms:.1f} ms ÷ segments in the index of LOCALIS"),

@@ -105,7 +105,12 @@ LOOPS_DRAWN = {
     "primitives": "{loops_primitives:,.0f}",
     "÷ segments": "{loops_seg_primitives:.2f}",
     "references": "{loops_references:,.0f}",
-    "memory ÷ replica": "{loops_seg_bytes:.2f}",
+    "memory": "{loops_bytes:,.0f}",
+    "÷ replica": "{loops_seg_bytes:.2f}",
+    "overview": "{overview_ms:.0f} ms",
+    "oblique": "{oblique_ms:.0f} ms",
+    "close": "{close_ms:.0f} ms",
+    "worst": "{worst_ms:.0f} ms",
     "time ÷ replica": "{loops_seg_time:.2f}",
 }
 LOOPS_INDEXES = {
@@ -116,9 +121,12 @@ LOOPS_INDEXES = {
 }
 LOOPS_DETAIL = {
     **WHERE,
+    "active": "{active:,.0f}",
     "half a pixel": "{half_ms:.1f} ms",
+    "of it cells": "{half_cells_ms:.1f} ms",
     "÷ full detail": "{loops_detail:.2f}",
     "÷ static": "{loops_static:.2f}",
+    "standing ÷ static": "{loops_standing:.2f}",
     "terrain": "{half_terrain_ms:.1f} ms",
 }
 LOOPS_PREPARED = {
@@ -234,7 +242,9 @@ def styles(results: Results) -> str:
 
 def changes(results: Results) -> str:
     """What changes of a map take, in frames of the view of all of it."""
-    return "\n\n".join([_table(_having(results, "restyle"), CHANGES), machine(results)])
+    return "\n\n".join(
+        [_table(_having(results, "restyle", techniques=("static", "bvh")), CHANGES), machine(results)]
+    )
 
 
 def networks(results: Results) -> str:

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,7 @@ struct LoopsOptions {
     RemovalOrder order = RemovalOrder::douglas_peucker;
     RemovalFunction function;
     LinePrimitives primitives = LinePrimitives::triangles;
-    LoopsBvh bvh;
+    std::optional<LoopsBvh> bvh;  // none: cells, made anew for each view of what is active in it
 };
 
 // Throws Error(input) that names what is out of range.

@@ -113,6 +113,9 @@ public:
     // Error(style) for what needs preparing anew, Error(unsupported) where the technique cannot.
     virtual std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                                      const MemoryAccount& memory) const = 0;
+    // Opened from a file, and now given what it was made of: with it, so that it can be edited; null where that makes no
+    // difference.
+    virtual std::shared_ptr<const Prepared> with_sources(const TechniqueInput&) const { return nullptr; }
     // With features added, removed or replaced: a new index that shares whatever lies elsewhere. Throws
     // Error(unsupported) where the technique cannot or the index was opened from a file, Error(input),
     // Error(style), Error(memory).

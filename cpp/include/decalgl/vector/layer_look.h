@@ -9,12 +9,18 @@
 
 namespace decalgl {
 
-// Of all fills, strokes or casings of a layer; what is empty stays as it is.
+// Of all fills, strokes or casings of a layer; what is empty stays as it is. Styles are of the kinds that the layer was
+// prepared for (technique/style_changes.h).
 struct DecalLook {
     std::vector<uint8_t>
         colors;  // R, G, B, A, sRGB, straight alpha: one, or one a feature; alpha 0: not there
-    std::vector<double> widths;  // metres on the map plane: one, or one a feature; 0: not there
+    std::vector<double> widths;       // metres on the map plane: one, or one a feature; 0: not there
+    std::vector<StrokeStyle> styles;  // of strokes
+    std::vector<uint32_t> style_of;   // each feature's place in `styles`; empty: the first for all
+    std::vector<Hatch> hatches;       // of fills
+    std::vector<uint32_t> hatch_of;
 
+    bool has_styles() const { return !styles.empty() || !hatches.empty(); }
     const uint8_t* color(size_t feature) const { return &colors[colors.size() == 4 ? 0 : 4 * feature]; }
     double width(size_t feature) const { return widths[widths.size() == 1 ? 0 : feature]; }
 };

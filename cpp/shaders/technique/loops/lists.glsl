@@ -1,30 +1,10 @@
 // From a map position to the lists of what may cover it: down the primary tree to a leaf, and along a path of its
 // secondary tree (loops_layout.h).
-#include "shared/position.glsl"
+#include "technique/loops/place.glsl"
 #include "technique/loops/loops_layout.h"
 
 uniform usamplerBuffer loops_nodes;
 uniform ivec4 root_box;     // of the terrain, in quanta
-uniform ivec2 first_block;  // the lattice begins at its corner
-uniform int block_shift;    // a block is 2^block_shift quanta
-uniform float quantum;      // metres
-
-// Beyond the lattice, and little enough for sums of 32 bits.
-const float farthest = 1e9;
-
-// The lattice point nearest to a position, moved by some metres.
-ivec2 lattice_point(Position position, vec2 moved) {
-    ivec2 block = position.block - first_block;
-    vec2 offset = position.offset + moved;
-    if (block_shift < 0) {
-        ivec2 rest = block & ((1 << -block_shift) - 1);
-        offset += vec2(rest) * base_offset.z;
-        block >>= -block_shift;
-    } else {
-        block <<= block_shift;
-    }
-    return block + ivec2(clamp(roundEven(offset / quantum), -farthest, farthest));
-}
 
 uint word(int place) {
     return texelFetch(loops_nodes, place).r;

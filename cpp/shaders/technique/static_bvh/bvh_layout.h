@@ -1,6 +1,6 @@
 // The buffers of the BVH index, after figure 4.2 of Zechmeister 2020. Read by C++ and GLSL alike.
 //
-//     cells         first node, first object         of each cell, and one more that ends the last
+//     cells         first node, object, count, 0     of each cell
 //     nodes         box                              cell by cell: a complete binary tree, root first
 //
 //     segments      vertex, vertex                   strokes: the objects of the cells
@@ -15,7 +15,7 @@
 //     leaf_edges    vertex, vertex, first row, end   the ring's own edges, and closing ones
 //
 //     objects       place, exterior                  groups with both: what the objects are (STROKE_OBJECT)
-//     styles        colour, half width, look, 0      of each slot, topmost first; the first two where all is plain
+//     styles        colour, half width, look, rank   of each slot; its place in draw order, the topmost 0
 //     looks         see below                        what slots share
 //
 // A box is min x, min y, max x, max y and holds its border. Lattice points are the only places there are: a

@@ -16,11 +16,12 @@ float exact_across(ivec2 point, ivec2 a, ivec2 b) {
     return magnitude(wide_cross(point - a, b - a)) / length(vec2(b - a));
 }
 
-// A segment of the cell: the stroke that it belongs to, whether it covers the point, the square of the least half
+// A segment of the cell: the stroke that it belongs to and its place in draw order, whether it covers the point, the square of the least half
 // width at which it would, and the place across the stroke, from 0 to 1. With THOENY, whether it covers any of
 // the pixel, and the premultiplied colour of what it covers.
 struct Candidate {
     uint slot;
+    uint rank;
     bool covers;
     float distance2;
 #ifdef THOENY

@@ -21,6 +21,9 @@ uint signature_of(uint slot) {
 
 #if defined(RINGS) || defined(BOTH)
 void add_fill(inout Borders borders, inout uint signature, uvec4 exterior, ivec2 point, ivec4 part, mat2 foot) {
+#ifdef HIDDEN
+    if (texelFetch(bvh_styles, int(exterior.y)).r >> 24 == 0u) return;
+#endif
     uint inside = add_exterior(borders, exterior, point, part, foot);
     if (inside == all_probes) signature += signature_of(exterior.y);
 #ifdef HATCHES

@@ -38,20 +38,24 @@ Search search_around(ivec2 point, ivec2 half_size) {
     return search;
 }
 
-// The next object of the cell, -1 where it has no more.
-int next_in_cell(inout Search search) {
+// Goes on by one node of the cell's tree. The object of a leaf that meets the pixel, else -1.
+int visit_node(inout Search search) {
     Tree tree = search.tree;
     uint node = search.node;
+    ivec4 box = texelFetch(bvh_nodes, tree.first_node + max(int(node) - 1, 0));
+    bool meets = node != 0u && all(greaterThanEqual(search.box.zw, box.xy)) && all(lessThanEqual(search.box.xy, box.zw));
+    bool is_leaf = node >= tree.first_leaf;
+    search.node = meets && !is_leaf ? 2u * node : next_right(node);
+    if (search.node >= tree.first_leaf + tree.objects) search.node = 0u;
+    return meets && is_leaf ? tree.first_object + int(node - tree.first_leaf) : -1;
+}
+
+// The next object of the cell, -1 where it has no more.
+int next_in_cell(inout Search search) {
     int object = -1;
     do {
-        ivec4 box = texelFetch(bvh_nodes, tree.first_node + max(int(node) - 1, 0));
-        bool meets = node != 0u && all(greaterThanEqual(search.box.zw, box.xy)) && all(lessThanEqual(search.box.xy, box.zw));
-        bool is_leaf = node >= tree.first_leaf;
-        if (meets && is_leaf) object = tree.first_object + int(node - tree.first_leaf);
-        node = meets && !is_leaf ? 2u * node : next_right(node);
-        if (node >= tree.first_leaf + tree.objects) node = 0u;
-    } while (object < 0 && node != 0u);
-    search.node = node;
+        object = visit_node(search);
+    } while (object < 0 && search.node != 0u);
     return object;
 }
 

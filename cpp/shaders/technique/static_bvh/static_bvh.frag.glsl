@@ -13,6 +13,8 @@
 // BORDERS        writes how the nearest border in the pixel runs, nothing where there is none; nearer ones are deeper
 // SAMPLES        the mean of some of the points of the pixel's area that follow that border, else its centre
 // THOENY         lines by how much of the pixel they cover
+// HIDDEN         some fills are not seen
+// LENS           pixels on one side of the lens's border
 // IDS            writes 1 + slot of the topmost feature at the centre, nothing where there is none
 
 // Some flags mean others, and some nothing beside others.
@@ -75,6 +77,10 @@ uniform ivec2 sample_range;  // the first and the one after the last
 #ifdef BOTH
 uniform usamplerBuffer bvh_objects;
 #endif
+#ifdef LENS
+#include "technique/static_bvh/lens_share.glsl"
+uniform bool inside;
+#endif
 #if defined(BORDERS) || defined(THOENY)
 #include "technique/static_bvh/search.glsl"
 #endif
@@ -99,6 +105,9 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) + ivec2(0, first_row);
     Position position = unpack_position(texelFetch(position_texture, pixel, 0));
     if (is_sky(position)) discard;
+#ifdef LENS
+    if (lens_share(pixel) == (inside ? 0.0 : 1.0)) discard;
+#endif
 #if defined(SAMPLES) || defined(SLOPES) || defined(THOENY) || defined(BORDERS)
     vec4 surface = texelFetch(surface_texture, pixel, 0);
 #endif

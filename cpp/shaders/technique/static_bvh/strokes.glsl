@@ -28,13 +28,15 @@ Candidate candidate(int segment, ivec2 point) {
     ivec2 a = texelFetch(bvh_vertices, ends.x).rg, b = texelFetch(bvh_vertices, ends.y).rg;
     Candidate found;
     found.slot = texelFetch(bvh_owners, ends.x).r;
-    float half_width = uintBitsToFloat(texelFetch(bvh_styles, int(found.slot)).g);
+    uvec4 style = texelFetch(bvh_styles, int(found.slot));
+    float half_width = uintBitsToFloat(style.g);
+    found.rank = style.a;
     found.distance2 = distance2(point, a, b);
 #ifdef THOENY
     vec2 along = a == b ? vec2(1.0, 0.0) : normalize(vec2(b - a));
     float coverage = thoeny_coverage(sqrt(found.distance2), half_width, pixel_width(foot, vec2(-along.y, along.x)));
     found.covers = half_width > 0.0 && coverage > 0.0;
-    vec4 straight = color_of(found.slot);
+    vec4 straight = unpackUnorm4x8(style.r);
     found.color = coverage * vec4(straight.rgb * straight.a, straight.a);
 #else
     found.covers = half_width > 0.0 && found.distance2 <= half_width * half_width;

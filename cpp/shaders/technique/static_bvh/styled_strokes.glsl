@@ -161,6 +161,7 @@ Candidate candidate(int object, ivec2 point) {
     Candidate found;
     found.slot = texelFetch(bvh_owners, int(segment.x & ~PLAIN_END)).r;
     uvec4 style = texelFetch(bvh_styles, int(found.slot));
+    found.rank = style.a;
     float half_width = uintBitsToFloat(style.g);
     Look look = look_at(int(style.b));
     mat2 lengths = mat2(1.0);

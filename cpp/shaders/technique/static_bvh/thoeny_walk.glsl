@@ -15,65 +15,87 @@ const int most_lines = 8;
 
 // Topmost first.
 struct Lines {
-    uint slots[most_lines];
+    uint ranks[most_lines];
     vec4 colors[most_lines];  // premultiplied, and by the coverage
     float distance2;
 };
 
+// A line, and whatever it takes the place of, sinks to where it belongs. Of a line's segments the one that covers most of
+// the pixel counts.
+void sink(inout Lines lines, int place, inout uint rank, inout vec4 color) {
+    uint other = lines.ranks[place];
+    vec4 below = lines.colors[place];
+    bool again = rank == other && rank != no_line;
+    bool takes = rank < other || (again && color.a > below.a);
+    lines.ranks[place] = takes ? rank : other;
+    lines.colors[place] = takes ? color : below;
+    color = takes ? below : color;
+    rank = again ? no_line : takes ? other : rank;
+}
+
 void keep(inout Lines lines, Candidate line) {
 #ifdef NEAREST
-    bool ties = line.distance2 == lines.distance2 && line.slot < lines.slots[0];
+    bool ties = line.distance2 == lines.distance2 && line.rank < lines.ranks[0];
     if (line.covers && (line.distance2 < lines.distance2 || ties)) {
-        lines.slots[0] = line.slot;
+        lines.ranks[0] = line.rank;
         lines.colors[0] = line.color;
         lines.distance2 = line.distance2;
     }
 #else
-    // The line, and whatever it takes the place of, sinks to where it belongs: by constant indices, which leave the
-    // arrays in registers.
-    uint slot = line.covers ? line.slot : no_line;
+    // One by one: by constant indices, which leave the arrays in registers, and without a loop, whose turns would count.
+    uint rank = line.covers ? line.rank : no_line;
     vec4 color = line.color;
-    for (int i = 0; i < most_lines; ++i) {
-        uint other = lines.slots[i];
-        vec4 below = lines.colors[i];
-        bool again = slot == other && slot != no_line;
-        // Of a line's segments the one that covers most of the pixel.
-        bool takes = slot < other || (again && color.a > below.a);
-        lines.slots[i] = takes ? slot : other;
-        lines.colors[i] = takes ? color : below;
-        color = takes ? below : color;
-        slot = again ? no_line : takes ? other : slot;
-    }
+    sink(lines, 0, rank, color);
+    sink(lines, 1, rank, color);
+    sink(lines, 2, rank, color);
+    sink(lines, 3, rank, color);
+    sink(lines, 4, rank, color);
+    sink(lines, 5, rank, color);
+    sink(lines, 6, rank, color);
+    sink(lines, 7, rank, color);
 #endif
 }
 
-// The next object of all cells, -1 after the last. Trees are searched apart from what their objects cover, as a branch not
-// taken costs as much in software.
-int next_object(inout Search search) {
-    int object = -1;
-    bool ended = false;
-    do {
-        object = next_in_cell(search);
-        if (object < 0) ended = !next_cell(search);
-    } while (object < 0 && !ended);
-    return object;
+// Front to back.
+vec4 composed(Lines lines) {
+    vec4 sum = lines.colors[0];
+#ifndef NEAREST
+    sum += (1.0 - sum.a) * lines.colors[1];
+    sum += (1.0 - sum.a) * lines.colors[2];
+    sum += (1.0 - sum.a) * lines.colors[3];
+    sum += (1.0 - sum.a) * lines.colors[4];
+    sum += (1.0 - sum.a) * lines.colors[5];
+    sum += (1.0 - sum.a) * lines.colors[6];
+    sum += (1.0 - sum.a) * lines.colors[7];
+#endif
+    return sum;
+}
+
+// One node further, or on to the next cell, until an object is found.
+void advance(inout Search search, inout int object, inout bool ended) {
+    if (object >= 0 || ended) return;
+    object = visit_node(search);
+    if (object < 0 && search.node == 0u) ended = !next_cell(search);
 }
 
 // `foot`: the vectors for one pixel right and up, in quanta.
 vec4 lines_at(ivec2 point, mat2 foot) {
     Lines lines;
     for (int i = 0; i < most_lines; ++i) {
-        lines.slots[i] = no_line;
+        lines.ranks[i] = no_line;
         lines.colors[i] = vec4(0.0);
     }
     lines.distance2 = 1e38;
     Search search = search_around(point, half_pixel(foot));
-    int object = -1;
+    bool ended = false;
+    // Mesa's software rasteriser ends all loops of a run after 65,535 turns: a turn is an object, or several nodes.
     do {
-        object = next_object(search);
+        int object = -1;
+        advance(search, object, ended);
+        advance(search, object, ended);
+        advance(search, object, ended);
+        advance(search, object, ended);
         if (object >= 0) keep(lines, candidate(object, point, foot));
-    } while (object >= 0);
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < most_lines; ++i) sum += (1.0 - sum.a) * lines.colors[i];
-    return sum;
+    } while (!ended);
+    return composed(lines);
 }

@@ -6,7 +6,7 @@
 
 uniform usamplerBuffer bvh_cells;
 uniform isamplerBuffer bvh_nodes;
-uniform usamplerBuffer bvh_styles;  // colour bytes, half width in quanta, look
+uniform usamplerBuffer bvh_styles;  // colour bytes, half width in quanta, look, rank
 #if defined(CORNERS) || defined(HATCHES)
 uniform usamplerBuffer bvh_looks;
 #endif
@@ -48,9 +48,8 @@ struct Tree {
 
 Tree tree_in(ivec2 place) {
     int cell = place.x + grid_size.x * place.y;
-    uvec2 start = texelFetch(bvh_cells, cell).rg;
-    uint objects = texelFetch(bvh_cells, cell + 1).g - start.y;
-    return Tree(int(start.x), int(start.y), objects, objects > 1u ? 2u << findMSB(objects - 1u) : 1u);
+    uvec3 start = texelFetch(bvh_cells, cell).rgb;
+    return Tree(int(start.x), int(start.y), start.z, start.z > 1u ? 2u << findMSB(start.z - 1u) : 1u);
 }
 
 // Columns and rows are tested apart: as one number, a column past the end would be a cell of the next row.

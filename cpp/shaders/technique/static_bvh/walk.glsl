@@ -2,11 +2,12 @@
 const uint no_slot = 0xFFFFFFFFu;
 
 // What has been found so far. In draw order, `slot` is the last feature added to the colour, with BANDS the one
-// to be added next; else the one to be shown. `seen` is the topmost that shows.
+// to be added next; else the one to be shown, of that rank. `seen` is the topmost that shows.
 struct Found {
     vec4 sum;
     uint seen;
     uint slot;
+    uint rank;
     float distance2;
     float across;
     bool done;
@@ -53,12 +54,13 @@ void add_in_order(inout Found found, uint slot, float across) {
 // The one line to be shown.
 void keep(inout Found found, Candidate line) {
 #ifdef NEAREST
-    bool better = line.distance2 < found.distance2 || (line.distance2 == found.distance2 && line.slot < found.slot);
+    bool better = line.distance2 < found.distance2 || (line.distance2 == found.distance2 && line.rank < found.rank);
 #else
-    bool better = line.slot < found.slot || (line.slot == found.slot && line.across < found.across);
+    bool better = line.rank < found.rank || (line.rank == found.rank && line.across < found.across);
 #endif
     if (line.covers && better) {
         found.slot = line.slot;
+        found.rank = line.rank;
         found.distance2 = line.distance2;
         found.across = line.across;
     }
@@ -109,7 +111,7 @@ void visit(inout Found found, int object, ivec2 point) {
 }
 
 Found walk(ivec2 point) {
-    Found found = Found(vec4(0.0), no_slot, no_slot, 1e38, 1e38, false);
+    Found found = Found(vec4(0.0), no_slot, no_slot, no_slot, 1e38, 1e38, false);
     Tree tree = tree_at(point);
     uint end = tree.first_leaf + tree.objects;
     uint node = tree.objects > 0u ? 1u : 0u;

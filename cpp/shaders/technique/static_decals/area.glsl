@@ -187,7 +187,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside) {
         uint alike = for_all;
         uint word;
         do {
-            word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
+            word = at < end ? texel_at(at >> 2)[at & 3] : LIST_END;
             bool ends = is_header(word);
 #ifndef PARTS
             // The last edge's end first; the header is read again.

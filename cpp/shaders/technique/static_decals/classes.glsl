@@ -38,7 +38,7 @@ Classed classed_cell(Cell cell, vec2 local, mat2 foot) {
     Group group = group_of(0u, bias, local, foot);
     bool alike = true, ended = false;
     do {
-        uint word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
+        uint word = at < end ? texel_at(at >> 2)[at & 3] : LIST_END;
         ++at;
         if (is_header(word)) {
             alike = add_alike(sum, open, group);

@@ -4,6 +4,17 @@
 #include "technique/static_decals/cells.glsl"
 
 uniform usamplerBuffer cell_texels;
+#ifdef LENS_LISTS
+uniform usamplerBuffer lens_texels;
+#endif
+
+// Four words of the lists.
+uvec4 texel_at(int texel) {
+#ifdef LENS_LISTS
+    if (first_style != 0) return texelFetch(lens_texels, texel);
+#endif
+    return texelFetch(cell_texels, texel);
+}
 
 const uint no_slot = 0xFFFFFFFFu;
 
@@ -41,7 +52,7 @@ Walk walk_cell(Cell cell, vec2 local) {
     uint left = cell.entry & COUNT_ESCAPE;
     // At the loop's end, since some drivers go through a body once more for a test at its beginning.
     do {
-        uvec4 words = texelFetch(cell_texels, texel++);
+        uvec4 words = texel_at(texel++);
         read_word(walk, words.x);
         read_word(walk, words.y);
         read_word(walk, words.z);

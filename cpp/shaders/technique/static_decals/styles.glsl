@@ -35,7 +35,11 @@ vec4 record_texel(int index) {
 
 // `half_width` in quanta.
 Style style_of(uint slot, float half_width) {
+#ifdef LENS_KINDS
+    uint kind = texelFetch(decal_kinds, style_place(slot)).r;
+#else
     uint kind = texelFetch(decal_kinds, int(slot)).r;
+#endif
     Style style;
     style.record = int(kind >> SCALE_BITS);
     uvec4 first = texelFetch(style_records, style.record);

@@ -133,7 +133,7 @@ void look_into(inout Layers layers, Cell cell, vec2 local, mat2 foot, uvec2 insi
     Nearest part = Nearest(out_of_reach, vec2(1.0, 0.0), 0.0);
     bool ended = false;
     do {
-        uint word = at < end ? texelFetch(cell_texels, at >> 2)[at & 3] : LIST_END;
+        uint word = at < end ? texel_at(at >> 2)[at & 3] : LIST_END;
         ++at;
         if (is_header(word)) {
             end_group(layers, open, group, part, cell, local, foot, inside);

@@ -35,6 +35,13 @@ struct Arcs {
     std::vector<uint64_t> chain_offsets;
     std::vector<uint32_t> chain_arcs;
 
+    // Frees what only preparing needs.
+    void drop_chains() {
+        locations = {};
+        chain_offsets = {};
+        chain_arcs = {};
+    }
+
     size_t count() const { return kinds.size(); }
     uint32_t begin(size_t arc) const { return offsets[arc]; }
     uint32_t end(size_t arc) const { return offsets[arc + 1]; }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
+#include "technique/loops/loops_layout.h"
 #include "technique/loops/prepared_loops.h"
 
 namespace decalgl::loops {
@@ -87,21 +88,17 @@ private:
     LinePrimitives primitives_;
 };
 
-Items make_items(const Hierarchy& hierarchy, const LoopsIndex& index, Span<const Decal> decals,
-                 uint32_t first_layer, unsigned threads) {
+Items make_items(const Hierarchy& hierarchy, LinePrimitives primitives, const Slots& slots,
+                 unsigned threads) {
     constexpr size_t grain = 1024;
-    const ItemMaker maker(hierarchy, index.primitives);
-    std::vector<Items> blocks(block_count(decals.size(), grain));
-    parallel_for(decals.size(), grain, threads, [&](size_t begin, size_t end) {
-        for (size_t slot = begin; slot < end; ++slot) {
-            const Decal& decal = decals[decals.size() - 1 - slot];
-            const size_t feature =
-                hierarchy.first_features[decal.feature.layer - first_layer] + decal.feature.feature;
-            if (decal.is_stroke())
-                maker.add_stroke(static_cast<uint32_t>(slot), feature, blocks[begin / grain]);
+    const ItemMaker maker(hierarchy, primitives);
+    std::vector<Items> blocks(block_count(slots.decals.size(), grain));
+    parallel_for(slots.decals.size(), grain, threads, [&](size_t begin, size_t end) {
+        for (size_t slot = begin; slot < end; ++slot)
+            if (slots.decals[slot].is_stroke())
+                maker.add_stroke(static_cast<uint32_t>(slot), slots.features[slot], blocks[begin / grain]);
             else
-                maker.add_fill(static_cast<uint32_t>(slot), feature, blocks[begin / grain]);
-        }
+                maker.add_fill(static_cast<uint32_t>(slot), slots.features[slot], blocks[begin / grain]);
     });
     Items items;
     size_t count = 0;
@@ -152,6 +149,33 @@ void count_features(Span<const Layer> layers, Span<const Decal> decals, uint32_t
     }
 }
 
+// The paper's index.
+Bvh make_bvh(const LoopsOptions& options, const Hierarchy& hierarchy, const Slots& slots, unsigned threads,
+             MemoryCharge& charge, Progress& progress) {
+    Bvh bvh;
+    bvh.primitives = options.primitives;
+    charge.resize(charge.bytes() + hierarchy.arcs.points.size() * sizeof(Base));
+    std::vector<float> half_widths;
+    for (const Style& style : slots.styles)
+        half_widths.push_back(style.half_width);
+    Items items = make_items(hierarchy, bvh.primitives, slots, threads);
+    bvh.items = items.size();
+    bvh.settings = fitted(*options.bvh, items.size());
+    bvh.tree = build_tree({&hierarchy, half_widths, bvh.primitives}, std::move(items),
+                          hierarchy.lattice.terrain, bvh.settings, threads, charge, progress);
+    bvh.bases = make_bases(hierarchy, threads);
+    return bvh;
+}
+
+Slots make_slots(const TechniqueInput& input, const std::vector<Decal>& decals, const Lattice& lattice) {
+    Slots slots;
+    slots.decals.assign(decals.rbegin(), decals.rend());
+    for (const Decal& decal : slots.decals)
+        slots.styles.push_back(
+            style_of({&input.layers[decal.feature.layer - input.first_layer], decal}, lattice.quantum));
+    return slots;
+}
+
 }  // namespace
 
 std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress& progress) {
@@ -162,44 +186,40 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
     validate(choice.detail);
     for (const Layer& layer : input.layers)
         refuse_styles(layer);
-    const std::vector<Decal> decals = decals_of(input.layers, input.first_layer);
+    const std::vector<Decal> decals = decals_of(input.layers, input.first_layer, Hidden::kept);
     if (decals.size() > most_slots)
         throw Error(ErrorKind::memory, "technique 'loops' draws at most " + std::to_string(most_slots) +
                                            " features in a pass; use technique 'static'");
     auto index = std::make_shared<LoopsIndex>();
     index->charge = MemoryCharge(input.memory, "loops: prepared", 0);
-    index->primitives = choice.options.primitives;
+    index->first_layer = input.first_layer;
+    for (const Layer& layer : input.layers)
+        index->outlines_by_feature.push_back(layer.outline_order == OutlineOrder::feature);
     count_features(input.layers, decals, input.first_layer, *index);
     Hierarchy hierarchy = build_hierarchy(input.layers, input.bounds, input.positions, *input.terrain,
                                           widest_reach(input.layers, input.first_layer, decals),
                                           choice.options, input.threads, progress);
+    index->charge.resize(hierarchy.arcs.points.size() *
+                         (sizeof(LatticePoint) + sizeof(Activation) + sizeof(Step)));
     index->lattice = hierarchy.lattice;
     index->heights = hierarchy.heights;
     index->needs = hierarchy.needs;
-    std::vector<float> half_widths;
-    for (size_t slot = 0; slot < decals.size(); ++slot) {
-        const Decal& decal = decals[decals.size() - 1 - slot];
-        index->styles.push_back(style_of({&input.layers[decal.feature.layer - input.first_layer], decal},
-                                         index->lattice.quantum));
-        half_widths.push_back(index->styles.back().half_width);
-        index->slots.push_back(decal.feature);
-    }
-    index->charge.resize(hierarchy.arcs.points.size() *
-                         (sizeof(LatticePoint) + sizeof(Base) + sizeof(Activation)));
-    Items items = make_items(hierarchy, *index, decals, input.first_layer, input.threads);
-    index->items = items.size();
-    index->settings = fitted(choice.options.bvh, items.size());
-    index->tree = build_tree({&hierarchy, half_widths, index->primitives}, std::move(items),
-                             index->lattice.terrain, index->settings, input.threads, index->charge, progress);
-    index->bases = make_bases(hierarchy, input.threads);
-    index->points = std::move(hierarchy.arcs.points);
+    index->first_features = hierarchy.first_features;
+    index->steps = steps_of(hierarchy.arcs, hierarchy.refinement, input.threads);
+    auto slots = std::make_shared<Slots>(make_slots(input, decals, index->lattice));
+    slots->complete(*index, hierarchy.arcs);
+    if (choice.options.bvh)
+        index->bvh = make_bvh(choice.options, hierarchy, *slots, input.threads, index->charge, progress);
+    index->arcs = std::move(hierarchy.arcs);
+    index->arcs.drop_chains();
     index->activations = std::move(hierarchy.activations);
     progress.report(1.0);
-    return std::make_unique<PreparedLoops>(std::move(index), choice.detail);
+    return std::make_unique<PreparedLoops>(std::move(index), std::move(slots), choice.detail);
 }
 
 PreparedCounts PreparedLoops::counts() const {
-    return {index_->features, index_->segments, index_->tree.counts.references, index_->charge.bytes(),
+    return {index_->features, index_->segments,
+            index_->bvh ? index_->bvh->tree.counts.references : index_->steps.size(), index_->charge.bytes(),
             index_->lattice.quantum};
 }
 

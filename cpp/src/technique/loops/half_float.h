@@ -3,17 +3,20 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace decalgl::loops {
 
 constexpr uint16_t half_infinity = 0x7C00;
 
 inline double half_to_double(uint16_t half) {
-    const int exponent = half >> 10;
-    const int fraction = half & 0x3FF;
-    if (exponent == 31)
+    if (half >= half_infinity)
         return INFINITY;
-    return exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
+    // The bits of a float whose exponent is as much too small as that of halves is: 2^-112.
+    const uint32_t bits = uint32_t{half} << 13;
+    float small = 0.0F;
+    std::memcpy(&small, &bits, sizeof(small));
+    return 0x1p112 * double{small};
 }
 
 // The least half that is at least `value`, which is not negative.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -10,13 +9,14 @@
 
 #include "decalgl/core/error.h"
 #include "gl/gl.h"
+#include "gl/pass_timer.h"
 #include "gl/texture.h"
 #include "shared/view_block.h"
-#include "technique/view_base.h"
 
 namespace decalgl {
 namespace {
 
+using loops::eye_of;
 using loops::LoopsIndex;
 
 [[noreturn]] void refuse_files() {
@@ -25,61 +25,17 @@ using loops::LoopsIndex;
                 "'static'");
 }
 
-[[noreturn]] void refuse_changes() {
-    throw Error(ErrorKind::unsupported,
-                "layers of technique 'loops' stay as they were prepared, but for their level of "
-                "detail; use technique 'static' to restyle or edit them");
-}
-
-// The camera of the view, out of what all passes are told of it.
-DetailEye detail_eye_of(const View& view) {
-    const ViewBlock& block = *view.block;
-    DetailEye eye;
-    eye.eye = eye_of(view);
-    for (int axis = 0; axis < 3; ++axis)
-        eye.forward[size_t(axis)] = double{block.forward[axis]};
-    const auto step = double{glm::length(glm::vec3(block.ray_direction_dy))};
-    eye.pixels = step > 0.0 ? 1.0 / step : 0.0;
-    eye.corner = 1.0 / std::hypot(1.0, 0.5 * step * std::hypot(double(view.width), double(view.height)));
-    eye.metres_per_pixel = step > 0.0 ? 0.0 : double{glm::length(glm::vec3(block.ray_origin_dy))};
-    return eye;
-}
-
 constexpr float no_bound = 3e38F;
-constexpr DecalRole decal_roles[] = {DecalRole::fill, DecalRole::stroke, DecalRole::casing};
+
+bool same(const DetailEye& a, const DetailEye& b) {
+    return a.eye == b.eye && a.forward == b.forward && a.pixels == b.pixels && a.corner == b.corner &&
+           a.metres_per_pixel == b.metres_per_pixel;
+}
 
 }  // namespace
 
 void loops::PreparedLoops::save(ArchiveWriter&, const std::string&) const {
     refuse_files();
-}
-
-// Looks stay as they were prepared.
-LayerLook loops::PreparedLoops::look_of(uint32_t layer, size_t) const {
-    LayerLook look;
-    look.layer = layer;
-    return look;
-}
-
-// With another level of detail; shares the index.
-std::shared_ptr<const Prepared> loops::PreparedLoops::restyled(Span<const LayerLook> looks,
-                                                               const MemoryAccount&) const {
-    LoopsDetail detail = detail_;
-    for (const LayerLook& look : looks) {
-        const bool has_looks = std::any_of(
-            std::begin(decal_roles), std::end(decal_roles),
-            [&](DecalRole role) { return !look.of(role)->colors.empty() || !look.of(role)->widths.empty(); });
-        if (has_looks || !look.draw_order.empty())
-            refuse_changes();
-        if (const auto* choice = dynamic_cast<const LoopsChoice*>(look.options.get()))
-            detail = choice->detail;
-    }
-    validate(detail);
-    return std::make_shared<PreparedLoops>(index_, detail);
-}
-
-std::shared_ptr<const Prepared> loops::PreparedLoops::edited(const LayerEdit&, const MemoryAccount&) const {
-    refuse_changes();
 }
 
 std::unique_ptr<const Prepared> Loops::open(const ArchiveReader&, const std::string&,
@@ -91,25 +47,69 @@ std::unique_ptr<const Prepared> Loops::preprocess(const TechniqueInput& input, P
     return loops::build_loops(input, progress);
 }
 
-void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
+void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                    const TerrainView&, const MemoryAccount& memory) {
+    memory_ = memory;
     prepared_ = std::static_pointer_cast<const loops::PreparedLoops>(std::move(prepared));
-    if (uploaded_ == prepared_->index())
-        return;
-    uploaded_ = nullptr;
-    buffers_.clear();
+    if (lens && static_cast<const loops::PreparedLoops&>(*lens).slots() != prepared_->slots())
+        throw Error(ErrorKind::unsupported,
+                    "layers of technique 'loops' look the same inside a lens; use technique 'static' for "
+                    "another look there, or Detail(lens=) for more details");
+    if (uploaded_ != prepared_->index()) {
+        uploaded_ = nullptr;
+        key_.reset();
+        buffers_.clear();
+        no_vertices_ = gl::VertexArray::create();
+        if (prepared_->index()->bvh)
+            upload_bvh();
+        uploaded_ = prepared_->index();
+    } else if (uploaded_->bvh && uploaded_slots_ != prepared_->slots()) {
+        buffers_.pop_back();
+        add_buffer("loops_styles", GL_RG32UI, prepared_->slots()->styles);
+    }
+    uploaded_slots_ = prepared_->slots();
+}
+
+template <typename Values>
+void Loops::add_buffer(const char* name, GLenum format, const Values& values) {
+    buffers_.push_back(
+        {name, gl::TextureBuffer::from(memory_, "loops: index", format, Span(values.data(), values.size()))});
+}
+
+void Loops::upload_bvh() {
     const LoopsIndex& index = *prepared_->index();
-    const auto add = [&](const char* name, GLenum format, const auto& values) {
-        buffers_.push_back({name, gl::TextureBuffer::from(memory, "loops: index", format,
-                                                          Span(values.data(), values.size()))});
-    };
-    add("loops_points", GL_RG32I, index.points);
-    add("loops_bases", GL_RG32UI, index.bases);
-    add("loops_activations", GL_RGBA32UI, index.activations);
-    add("loops_styles", GL_RG32UI, index.styles);
-    add("loops_nodes", GL_R32UI, index.tree.words);
-    no_vertices_ = gl::VertexArray::create();
-    uploaded_ = prepared_->index();
+    add_buffer("loops_points", GL_RG32I, index.arcs.points);
+    add_buffer("loops_bases", GL_RG32UI, index.bvh->bases);
+    add_buffer("loops_activations", GL_RGBA32UI, index.activations);
+    add_buffer("loops_nodes", GL_R32UI, index.bvh->tree.words);
+    // The last, as it changes with the looks.
+    add_buffer("loops_styles", GL_RG32UI, prepared_->slots()->styles);
+}
+
+// The cells of a view, unless they are there.
+void Loops::make_cells(const View& view) {
+    const gl::PassTimer timer(view.timings, "loops: cells");
+    const LoopsIndex& index = *prepared_->index();
+    const LoopsDetail& detail = prepared_->detail();
+    CellsKey key{loops::Sight(view, index.lattice, index.heights), detail.has_eye ? detail.eye : eye_of(view),
+                 detail, prepared_->slots()};
+    if (key_ && key_->sight == key.sight && same(key_->eye, key.eye) && key_->detail == detail &&
+        key_->slots == key.slots)
+        return;
+    key_.reset();
+    const loops::ViewDetail wanted(detail, key.eye, key.sight, index.lattice, index.heights);
+    const loops::Slots& slots = *prepared_->slots();
+    const loops::ActiveArcs active =
+        loops::active_arcs(index.arcs, index.steps, 0, [&](uint32_t point, size_t arc) {
+            return wanted.is_active(index.activations[point], double{slots.reaches[arc]});
+        });
+    cells_ = loops::make_cells(index.arcs, active, slots, key.sight.box(), 0);
+    buffers_.clear();
+    add_buffer("bucket_entries", GL_R32UI, cells_.lists.buckets);
+    add_buffer("cell_entries", GL_R32UI, cells_.lists.cells);
+    add_buffer("cell_texels", GL_RGBA32UI, cells_.lists.texels);
+    cells_.lists.drop();
+    key_ = std::move(key);
 }
 
 UpdateReport Loops::update(const View& view) {
@@ -118,15 +118,17 @@ UpdateReport Loops::update(const View& view) {
         throw Error(ErrorKind::unsupported,
                     "heat maps of technique 'loops' count primitives at the centres of pixels; "
                     "draw them with antialias 'none'");
+    if (!index.bvh)
+        make_cells(view);
     UpdateReport report;
-    report.pieces = index.tree.counts.references;
     for (const NamedBuffer& each : buffers_)
         report.bytes += each.buffer.buffer().bytes();
-    report.longest_walk = index.tree.counts.longest_walk;
-    report.counts = {{"loops_vertices", double(index.points.size())},
-                     {"loops_primitives", double(index.items)},
-                     {"loops_references", double(index.tree.counts.references)},
-                     {"loops_nodes", double(index.tree.counts.nodes)},
+    report.pieces = index.bvh ? index.bvh->tree.counts.references : cells_.lists.edges;
+    report.longest_walk = index.bvh ? index.bvh->tree.counts.longest_walk : cells_.lists.longest;
+    report.counts = {{"loops_vertices", double(index.activations.size())},
+                     {"loops_primitives", double(index.bvh ? index.bvh->items : cells_.active)},
+                     {"loops_references", double(report.pieces)},
+                     {"loops_nodes", double(index.bvh ? index.bvh->tree.counts.nodes : cells_.cells)},
                      {"loops_dependencies", double(index.needs)},
                      {"loops_bytes", double(report.bytes)}};
     return report;
@@ -160,20 +162,8 @@ void Loops::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLi
 void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer,
                       gl::ProgramLibrary& programs) {
     const LoopsIndex& index = *prepared_->index();
-    const LoopsDetail& detail = prepared_->detail();
-    const auto is_fill = [](const loops::Style& style) { return style.half_width == 0.0F; };
-    const auto add_if = [&](bool wanted, const char* flag) {
-        if (wanted)
-            flags.insert(flag);
-    };
-    add_if(std::any_of(index.styles.begin(), index.styles.end(), is_fill), "FILLS");
-    add_if(!std::all_of(index.styles.begin(), index.styles.end(), is_fill), "STROKES");
-    add_if(index.primitives == LinePrimitives::segments, "SEGMENTS");
-    add_if(index.tree.most_lists > 1, "PATHS");
-    add_if(detail.screen >= 0.0, "SCREEN");
-    add_if(!detail.steps.empty(), "BY_DISTANCE");
-    add_if(detail.lens >= 0.0, "CIRCLE");
-    gl::Program& program = programs.get("loops", flags);
+    add_flags(flags);
+    gl::Program& program = programs.get(index.bvh ? "loops" : "loops_cells", flags);
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
@@ -187,18 +177,59 @@ void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuf
         each.buffer.bind(static_cast<GLuint>(unit++));
     }
     const loops::Lattice& lattice = index.lattice;
-    const loops::LatticeBox& box = lattice.terrain;
-    program.set("root_box", glm::ivec4(box.min_x, box.min_y, box.max_x, box.max_y));
     program.set("first_block", glm::ivec2(lattice.first_block_x, lattice.first_block_y));
     program.set("block_shift",
                 static_cast<int>(std::lrint(std::log2(view.positions.block_size / lattice.quantum))));
     program.set("quantum", static_cast<float>(lattice.quantum));
-    program.set("length_scale", static_cast<float>(lattice.quantum / loops::length_scale));
+    program.set("quanta_per_metre", static_cast<float>(1.0 / lattice.quantum));
     if (flags.count("TESTED") + flags.count("ACTIVE") != 0)
-        program.set("heat_top", static_cast<float>(detail.heat_top));
-    set_detail(program, view);
+        program.set("heat_top", static_cast<float>(prepared_->detail().heat_top));
+    if (index.bvh)
+        set_bvh(program, view);
+    else
+        set_cells(program);
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+// What of the programs a scene needs.
+void Loops::add_flags(gl::Flags& flags) const {
+    const LoopsIndex& index = *prepared_->index();
+    const LoopsDetail& detail = prepared_->detail();
+    const std::vector<loops::Style>& styles = prepared_->slots()->styles;
+    const auto is_fill = [](const loops::Style& style) { return style.is_fill(); };
+    const auto add_if = [&](bool wanted, const char* flag) {
+        if (wanted)
+            flags.insert(flag);
+    };
+    add_if(std::any_of(styles.begin(), styles.end(), is_fill), "FILLS");
+    add_if(!std::all_of(styles.begin(), styles.end(), is_fill), "STROKES");
+    if (!index.bvh) {
+        const auto is_translucent = [](const loops::Style& style) {
+            return style.is_shown() && !style.is_opaque();
+        };
+        add_if(std::any_of(styles.begin(), styles.end(), is_translucent), "TRANSLUCENT");
+        return;
+    }
+    add_if(index.bvh->primitives == LinePrimitives::segments, "SEGMENTS");
+    add_if(index.bvh->tree.most_lists > 1, "PATHS");
+    add_if(detail.screen >= 0.0, "SCREEN");
+    add_if(!detail.steps.empty(), "BY_DISTANCE");
+    add_if(detail.lens >= 0.0, "CIRCLE");
+}
+
+void Loops::set_cells(gl::Program& program) const {
+    program.set("grid_corner", glm::ivec2(cells_.corner.x, cells_.corner.y));
+    program.set("grid_size", glm::ivec2(cells_.columns, cells_.rows));
+    program.set("bucket_bits", cells_.bucket_bits);
+}
+
+void Loops::set_bvh(gl::Program& program, const View& view) const {
+    const loops::Lattice& lattice = prepared_->index()->lattice;
+    const loops::LatticeBox& box = lattice.terrain;
+    program.set("root_box", glm::ivec4(box.min_x, box.min_y, box.max_x, box.max_y));
+    program.set("length_scale", static_cast<float>(lattice.quantum / loops::length_scale));
+    set_detail(program, view);
 }
 
 void Loops::set_detail(gl::Program& program, const View& view) const {
@@ -217,7 +248,7 @@ void Loops::set_detail(gl::Program& program, const View& view) const {
     }
     if (detail.screen < 0.0 && detail.steps.empty())
         return;
-    const DetailEye eye = detail.has_eye ? detail.eye : detail_eye_of(view);
+    const DetailEye eye = detail.has_eye ? detail.eye : eye_of(view);
     const glm::dvec2 place((eye.eye[0] - lattice.left) / lattice.quantum,
                            (eye.eye[1] - lattice.bottom) / lattice.quantum);
     const glm::dvec2 nearest = glm::clamp(glm::round(place), -1.0 * (1 << 30), 1.0 * (1 << 30));

@@ -3,11 +3,15 @@
 // After Amiraghdam, Diehl and Pajarola: docs/techniques/loops.md.
 #pragma once
 
+#include <optional>
+
 #include "decalgl/technique/technique.h"
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "gl/vertex_array.h"
 #include "technique/loops/prepared_loops.h"
+#include "technique/loops/view_cells.h"
+#include "technique/loops/view_detail.h"
 
 namespace decalgl {
 
@@ -30,14 +34,32 @@ private:
         const char* name;
         gl::TextureBuffer buffer;
     };
+    // What the cells were made for.
+    struct CellsKey {
+        loops::Sight sight;
+        DetailEye eye;
+        LoopsDetail detail;
+        std::shared_ptr<const loops::Slots> slots;
+    };
 
+    void upload_bvh();
+    template <typename Values>
+    void add_buffer(const char* name, GLenum format, const Values& values);
+    void make_cells(const View& view);
+    void add_flags(gl::Flags& flags) const;
     void draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer,
                    gl::ProgramLibrary& programs);
+    void set_bvh(gl::Program& program, const View& view) const;
+    void set_cells(gl::Program& program) const;
     void set_detail(gl::Program& program, const View& view) const;
 
+    MemoryAccount memory_;
     std::shared_ptr<const loops::PreparedLoops> prepared_;
     std::shared_ptr<const loops::LoopsIndex> uploaded_;
+    std::shared_ptr<const loops::Slots> uploaded_slots_;
     std::vector<NamedBuffer> buffers_;
+    std::optional<CellsKey> key_;
+    loops::ViewCells cells_;  // without its lists, which are on the GPU
     gl::VertexArray no_vertices_;
 };
 

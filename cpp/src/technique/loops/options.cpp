@@ -40,23 +40,11 @@ auto tied(const LoopsBvh& bvh) {
                     bvh.secondary_branching, bvh.coverage_depth, bvh.minimum_coverage);
 }
 
-}  // namespace
-
-bool operator==(const LoopsDetail& a, const LoopsDetail& b) {
-    return tied(a) == tied(b) && a.steps.size() == b.steps.size() &&
-           std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(),
-                      [](const DetailStep& x, const DetailStep& y) { return x == y; });
+bool same(const std::optional<LoopsBvh>& a, const std::optional<LoopsBvh>& b) {
+    return a && b ? tied(*a) == tied(*b) : !a && !b;
 }
 
-bool LoopsChoice::equals(const TechniqueOptions& other) const {
-    const auto* choice = dynamic_cast<const LoopsChoice*>(&other);
-    return choice != nullptr && !options.function && !choice->options.function &&
-           options.order == choice->options.order && options.primitives == choice->options.primitives &&
-           tied(options.bvh) == tied(choice->options.bvh) && detail == choice->detail;
-}
-
-void validate(const LoopsOptions& options) {
-    const LoopsBvh& bvh = options.bvh;
+void validate(const LoopsBvh& bvh) {
     for (const auto* levels : {&bvh.primary_branching, &bvh.secondary_branching}) {
         require(levels->size() <= 16, "bvh: a tree of LOOPS has at most 16 levels");
         for (const uint32_t children : *levels)
@@ -73,6 +61,26 @@ void validate(const LoopsOptions& options) {
     require(bvh.coverage_depth >= 1 && bvh.coverage_depth <= 4, "bvh: coverage_depth must be from 1 to 4");
     require(bvh.minimum_coverage > 0.0 && bvh.minimum_coverage <= 1.0,
             "bvh: minimum_coverage must be above 0 and at most 1");
+}
+
+}  // namespace
+
+bool operator==(const LoopsDetail& a, const LoopsDetail& b) {
+    return tied(a) == tied(b) && a.steps.size() == b.steps.size() &&
+           std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(),
+                      [](const DetailStep& x, const DetailStep& y) { return x == y; });
+}
+
+bool LoopsChoice::equals(const TechniqueOptions& other) const {
+    const auto* choice = dynamic_cast<const LoopsChoice*>(&other);
+    return choice != nullptr && !options.function && !choice->options.function &&
+           options.order == choice->options.order && options.primitives == choice->options.primitives &&
+           same(options.bvh, choice->options.bvh) && detail == choice->detail;
+}
+
+void validate(const LoopsOptions& options) {
+    if (options.bvh)
+        validate(*options.bvh);
     require((options.order == RemovalOrder::function) == static_cast<bool>(options.function),
             "order: a function goes with the order of a function alone");
 }

@@ -1,112 +1,60 @@
-// What lies at a map position: the shaders' walk with everything active.
-#include <algorithm>
+// What lies at a map position, with all details: of each arc only what is near it is looked at.
 #include <cmath>
 #include <unordered_set>
 
+#include "technique/loops/half_float.h"
 #include "technique/loops/prepared_loops.h"
 
 namespace decalgl::loops {
 namespace {
 
+// Whether an edge crosses the point's row at or left of it.
+bool crosses(LatticePoint a, LatticePoint b, LatticePoint point) {
+    if ((a.y <= point.y) == (b.y <= point.y))
+        return false;
+    if (a.y > b.y)
+        std::swap(a, b);
+    return doubled_area(a, b, point) <= 0;
+}
+
 class Query {
 public:
-    Query(const LoopsIndex& index, LatticePoint point)
-        : index_(index), words_(index.tree.words), point_(point) {}
+    Query(const LoopsIndex& index, const Slots& slots, LatticePoint point)
+        : index_(index), slots_(slots), point_(point) {
+        // What is left out of an arc lies in a region that does not hold the point, and its base does too.
+        active_ = active_arcs(index.arcs, index.steps, 0, [&](uint32_t p, size_t arc) {
+            const Activation& activation = index.activations[p];
+            const double radius =
+                half_to_double(static_cast<uint16_t>(activation.error_and_radius >> 16)) / length_scale;
+            const double reach = double{slots.reaches[arc]} / index.lattice.quantum;
+            return distance_between(point, {activation.x, activation.y}) <= radius + reach + 1.0;
+        });
+    }
 
-    // The slots there, topmost first.
-    std::vector<uint32_t> run() {
-        size_t node = 0;
-        LatticeBox box = index_.lattice.terrain;
-        if (words_.empty() || !box.holds(point_))
-            return {};
-        while (words_[node + 1] != 0) {
-            const size_t next = child(node, box);
-            if (next == 0)
-                return {};
-            node = next;
+    bool is_in(size_t slot) const {
+        const Style& style = slots_.styles[slot];
+        const size_t feature = slots_.features[slot];
+        bool inside = false;
+        for (const uint32_t arc :
+             style.is_fill() ? index_.arcs.fill_of(feature) : index_.arcs.stroke_of(feature)) {
+            if (index_.arcs.kinds[arc] == ArcKind::frame)
+                continue;
+            const Span<const LatticePoint> points = active_.of(arc);
+            for (size_t i = 0; i + 1 < points.size(); ++i)
+                if (!style.is_fill())
+                    inside = inside || distance_to_segment(point_, points[i], points[i + 1]) <=
+                                           double{style.half_width};
+                else if (crosses(points[i], points[i + 1], point_))
+                    inside = !inside;
         }
-        node += words_[node];
-        for (;;) {
-            if (words_[node] != 0)
-                visit_list(node + words_[node]);
-            const size_t next = words_[node + 1] != 0 ? child(node, box) : 0;
-            if (next == 0)
-                break;
-            node = next;
-        }
-        std::vector<uint32_t> found = std::move(strokes_);
-        std::sort(fills_.begin(), fills_.end());
-        for (size_t i = 0, next = 0; i < fills_.size(); i = next) {
-            while (next < fills_.size() && fills_[next] == fills_[i])
-                ++next;
-            if ((next - i) % 2 == 1)
-                found.push_back(fills_[i]);
-        }
-        std::sort(found.begin(), found.end());
-        found.erase(std::unique(found.begin(), found.end()), found.end());
-        return found;
+        return inside;
     }
 
 private:
-    size_t child(size_t node, LatticeBox& box) const {
-        const int64_t side = words_[node + 1];
-        const int64_t width = words_[node + 2], height = words_[node + 3];
-        const int64_t column = (int64_t{point_.x} - box.min_x) / width,
-                      row = (int64_t{point_.y} - box.min_y) / height;
-        const LatticeBox own = box;
-        box.min_x = static_cast<int32_t>(own.min_x + column * width);
-        box.min_y = static_cast<int32_t>(own.min_y + row * height);
-        box.max_x = static_cast<int32_t>(std::min<int64_t>(box.min_x + width - 1, own.max_x));
-        box.max_y = static_cast<int32_t>(std::min<int64_t>(box.min_y + height - 1, own.max_y));
-        const uint32_t step = words_[node + NODE_WORDS + static_cast<size_t>(row * side + column)];
-        return step == 0 ? 0 : node + step;
-    }
-
-    void visit_list(size_t list) {
-        const size_t end = list + 1 + words_[list];
-        for (size_t i = list + 1; i < end;) {
-            const uint32_t slot = words_[i] >> GROUP_COUNT_BITS, count = words_[i] & GROUP_COUNT_MASK;
-            for (uint32_t k = 1; k <= count; ++k)
-                visit(slot, words_[i + k]);
-            i += 1 + count;
-        }
-    }
-
-    void visit(uint32_t slot, uint32_t primitive) {
-        const uint32_t p = primitive & LOOPS_POINT_MASK;
-        const float half_width = index_.styles[slot].half_width;
-        const Base base = index_.bases[p];
-        const uint32_t left = base.left & LOOPS_POINT_MASK;
-        if (half_width == 0.0F) {
-            if (crosses(left, p) != (crosses(p, base.right) != crosses(left, base.right)))
-                fills_.push_back(slot);
-            return;
-        }
-        const auto covers = [&](uint32_t a, uint32_t b) {
-            return distance_to_segment(point_, index_.points[a], index_.points[b]) <= double{half_width};
-        };
-        const bool is_edge = (primitive & EDGE_FLAG) != 0;
-        if (is_edge ? covers(p, p + 1)
-                    : ((base.left & BASE_LEFT_EDGE) != 0 && covers(left, p)) ||
-                          ((base.left & BASE_RIGHT_EDGE) != 0 && covers(p, base.right)))
-            strokes_.push_back(slot);
-    }
-
-    // Whether a side crosses the point's row at or left of it.
-    bool crosses(uint32_t from, uint32_t to) const {
-        LatticePoint a = index_.points[from], b = index_.points[to];
-        if ((a.y <= point_.y) == (b.y <= point_.y))
-            return false;
-        if (a.y > b.y)
-            std::swap(a, b);
-        return doubled_area(a, b, point_) <= 0;
-    }
-
     const LoopsIndex& index_;
-    const LargeArray<uint32_t>& words_;
+    const Slots& slots_;
     LatticePoint point_;
-    std::vector<uint32_t> fills_;  // a slot for each triangle
-    std::vector<uint32_t> strokes_;
+    ActiveArcs active_;
 };
 
 }  // namespace
@@ -117,10 +65,15 @@ std::vector<FeatureReference> PreparedLoops::query(const SeenPoint& point) const
     if (!(std::abs((point.x - lattice.left) / lattice.quantum) <= 2.0 * lattice_extent &&
           std::abs((point.y - lattice.bottom) / lattice.quantum) <= 2.0 * lattice_extent))
         return found;
+    const LatticePoint place = lattice.nearest(point.x, point.y);
+    if (!lattice.terrain.holds(place))
+        return found;
+    const Query query(*index_, *slots_, place);
     std::unordered_set<uint64_t> seen;
-    for (const uint32_t slot : Query(*index_, lattice.nearest(point.x, point.y)).run()) {
-        const FeatureReference feature = index_->slots[slot];
-        if (seen.insert(uint64_t{feature.layer} << 32 | feature.feature).second)
+    for (size_t slot = 0; slot < slots_->decals.size(); ++slot) {
+        const FeatureReference feature = slots_->decals[slot].feature;
+        if (slots_->styles[slot].is_shown() && query.is_in(slot) &&
+            seen.insert(uint64_t{feature.layer} << 32 | feature.feature).second)
             found.push_back(feature);
     }
     return found;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "technique/static_bvh/data_group.h"
+#include "technique/static_bvh/walk_length.h"
 
 namespace decalgl::bvh {
 namespace {
@@ -43,26 +44,58 @@ void count_features(const TechniqueInput& input, Span<const Decal> decals, Prepa
 
 std::unique_ptr<PreparedBvh> build_bvh(const TechniqueInput& input, Progress& progress) {
     auto bvh = std::make_unique<PreparedBvh>();
-    bvh->charge = MemoryCharge(input.memory, "static_bvh: prepared", 0);
     bvh->options = input.bvh;
-    const std::vector<Decal> decals = decals_of(input.layers, input.first_layer);
+    bvh->rules = rules_of(input);
+    bvh->sources = std::make_shared<const LayerSources>(input);
+    bvh->bounds = input.bounds;
+    bvh->positions = input.positions;
+    bvh->threads = input.threads;
+    const std::vector<Decal> decals = decals_of(input.layers, input.first_layer, Hidden::kept);
     bvh->lattice = Lattice::over(input.bounds, input.positions, widest_reach(input, decals));
     count_features(input, decals, *bvh);
     const std::vector<DecalRun> runs = cut_into_runs(input, decals);
     for (size_t i = 0; i < runs.size(); ++i) {
         const auto count = static_cast<double>(runs.size());
-        add_group(input, runs[i], *bvh, {&progress, double(i) / count, double(i + 1) / count});
+        bvh->groups.push_back(
+            build_group(input, runs[i], bvh->lattice, {&progress, double(i) / count, double(i + 1) / count}));
+        bvh->longest_walk = std::max(bvh->longest_walk, longest_walk(bvh->groups.back(), input.threads));
     }
+    bvh->count_slots();
     progress.report(1.0);
     return bvh;
+}
+
+void PreparedBvh::count_slots() {
+    uint32_t slots = 0;
+    pieces = 0;
+    for (DecalGroup& group : groups) {
+        group.first_slot = slots;
+        slots += static_cast<uint32_t>(group.slots.size());
+        pieces += group.segments.size() + group.exteriors.size() + group.interiors.size();
+    }
+}
+
+FeatureReference PreparedBvh::feature(uint32_t id) const {
+    const auto after =
+        std::upper_bound(groups.begin(), groups.end(), id,
+                         [](uint32_t slot, const DecalGroup& group) { return slot < group.first_slot; });
+    const DecalGroup& group = *(after - 1);
+    return group.slots[id - group.first_slot].feature;
+}
+
+bool PreparedBvh::shows_anything() const {
+    return std::any_of(groups.begin(), groups.end(), [](const DecalGroup& group) { return group.has_shown; });
 }
 
 PreparedCounts PreparedBvh::counts() const {
     // Half widths are held in float32, so a wide line's border may lie further off than its vertices.
     double quantum = lattice.quantum;
-    for (const DecalGroup& group : groups)
+    uint64_t bytes = 0;
+    for (const DecalGroup& group : groups) {
         quantum = std::max(quantum, lattice.quantum * std::ldexp(double{group.widest}, -22));
-    return {features, segments, pieces, charge.bytes(), quantum};
+        bytes += group.charge->bytes();
+    }
+    return {features, segments, pieces, bytes, quantum};
 }
 
 }  // namespace decalgl::bvh

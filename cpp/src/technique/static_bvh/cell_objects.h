@@ -89,14 +89,14 @@ CellRecords collect_records(size_t count, size_t grain, uint32_t cell_count, con
 // The trees of all cells, whose objects are counted already; box_of(cell, object) with places in the whole
 // list.
 template <typename BoxOf>
-void plant_trees(DecalGroup& group, MemoryCharge& charge, unsigned threads, const Stage& stage,
+void plant_trees(GroupBuild& group, MemoryCharge& charge, unsigned threads, const Stage& stage,
                  BoxOf box_of) {
     const uint32_t cell_count = group.grid.cell_count();
     uint64_t total = 0;
-    for (uint32_t cell = 0; cell <= cell_count; ++cell) {
-        require_size(total, "tree nodes");
+    for (uint32_t cell = 0; cell < cell_count; ++cell) {
         group.cells[cell].node = static_cast<uint32_t>(total);
-        total += cell < cell_count ? stored_nodes(group.objects_in(cell)) : 0;
+        total += stored_nodes(group.cells[cell].count);
+        require_size(total, "tree nodes");
     }
     grow(group.nodes, total, "tree nodes", charge);
     parallel_for(
@@ -105,7 +105,7 @@ void plant_trees(DecalGroup& group, MemoryCharge& charge, unsigned threads, cons
             std::vector<LatticeBox> boxes;
             for (size_t at = begin; at < end; ++at) {
                 const auto cell = static_cast<uint32_t>(at);
-                boxes.resize(group.objects_in(cell));
+                boxes.resize(group.cells[cell].count);
                 for (uint32_t i = 0; i < boxes.size(); ++i)
                     boxes[i] = box_of(cell, group.cells[cell].object + i);
                 fill_tree(boxes, group.nodes.data() + group.cells[cell].node);

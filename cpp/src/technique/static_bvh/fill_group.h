@@ -25,7 +25,7 @@ struct Polygons {
 
 class FillBuilder {
 public:
-    FillBuilder(const TechniqueInput& input, Polygons polygons, DecalGroup& group, MemoryCharge& charge)
+    FillBuilder(const TechniqueInput& input, Polygons polygons, GroupBuild& group, MemoryCharge& charge)
         : input_(input), polygons_(std::move(polygons)), group_(group), charge_(charge) {}
 
     // First: the quad-trees.
@@ -62,7 +62,7 @@ private:
 
     const TechniqueInput& input_;
     Polygons polygons_;
-    DecalGroup& group_;
+    GroupBuild& group_;
     MemoryCharge& charge_;
     std::vector<Owner> owners_;
     std::vector<uint32_t> polygon_of_;

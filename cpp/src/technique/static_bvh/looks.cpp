@@ -32,16 +32,6 @@ uint64_t turn_bits(double turns) {
 
 }  // namespace
 
-float as_float(uint32_t bits) {
-    float value = 0.0F;
-    std::memcpy(&value, &bits, sizeof(value));
-    return value;
-}
-
-float DecalGroup::phase(uint32_t vertex) const {
-    return needs.patterns ? as_float(owners[2 * size_t{vertex} + 1]) : 0.0F;
-}
-
 uint32_t LookWriter::place_of(const DecalView& decal) {
     const bool stroke = decal.decal.is_stroke();
     const size_t style =

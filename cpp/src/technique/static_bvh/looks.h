@@ -10,7 +10,7 @@ namespace decalgl::bvh {
 
 class LookWriter {
 public:
-    LookWriter(const Lattice& lattice, DecalGroup& group) : lattice_(lattice), group_(group) {}
+    LookWriter(const Lattice& lattice, GroupBuild& group) : lattice_(lattice), group_(group) {}
 
     // Where the look of a decal begins; adds to what the group needs.
     uint32_t place_of(const DecalView& decal);
@@ -21,7 +21,7 @@ private:
     void write_set(const Hatch& hatch, double angle);
 
     const Lattice& lattice_;
-    DecalGroup& group_;
+    GroupBuild& group_;
     // By layer, role and place in the layer.
     std::map<std::tuple<const Layer*, DecalRole, size_t>, uint32_t> places_;
 };
@@ -42,7 +42,5 @@ StrokeLook stroke_look(const DecalGroup& group, uint32_t place);
 
 // Whether the lines of a fill's hatch, if it has one, take in a point.
 bool hatch_holds(const DecalGroup& group, uint32_t place, LatticePoint point);
-
-float as_float(uint32_t bits);
 
 }  // namespace decalgl::bvh

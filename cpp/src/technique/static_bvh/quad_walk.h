@@ -10,7 +10,7 @@ namespace decalgl::bvh {
 
 // Whether a ring holds a point, of which the node's box need not.
 inline bool holds(const DecalGroup& group, uint32_t node, LatticePoint point) {
-    const QuadTrees& quads = group.quads;
+    const QuadTreesOf<GrownArray>& quads = group.quads;
     if (!quads.boxes[node].holds(point))
         return false;
     while (quads.links[node].kind() == QUAD_INTERNAL) {
@@ -41,7 +41,7 @@ inline bool holds(const DecalGroup& group, const Exterior& exterior, LatticePoin
 }
 
 // The most nodes and edges that a point of a box looks at below a node.
-inline uint64_t longest_way(const QuadTrees& quads, uint32_t node, const LatticeBox& box) {
+inline uint64_t longest_way(const QuadTreesOf<GrownArray>& quads, uint32_t node, const LatticeBox& box) {
     if (!quads.boxes[node].meets(box))
         return 1;
     const QuadLink link = quads.links[node];

@@ -13,6 +13,7 @@ namespace {
 
 // Where an object covers a point: a slot, and the place across its stroke.
 struct Cover {
+    uint32_t rank;
     uint32_t slot;
     double share;
 };
@@ -32,19 +33,19 @@ bool fill_holds(const DecalGroup& group, const Exterior& exterior, LatticePoint 
 std::vector<Cover> covers_of(const DecalGroup& group, LatticePoint point, const Slope& slope) {
     std::vector<Cover> covers;
     const CellStart start = group.cells[group.grid.cell_at(point)];
-    const uint32_t objects = group.objects_in(group.grid.cell_at(point));
     const auto reached = [&](const LatticeBox& box) { return box.holds(point); };
-    traverse(group.nodes.data() + start.node, objects, reached, [&](uint32_t index) {
+    traverse(group.nodes.data() + start.node, start.count, reached, [&](uint32_t index) {
         const Object object = group.object(start.object + index);
         if (!object.is_stroke()) {
             const Exterior& exterior = group.exteriors[object.place];
-            if (fill_holds(group, exterior, point))
-                covers.push_back({exterior.slot, 0.0});
+            const Style& style = group.styles[exterior.slot];
+            if (style.shows() && fill_holds(group, exterior, point))
+                covers.push_back({style.rank, exterior.slot, 0.0});
             return true;
         }
         const double share = stroke_share(group, object.segment(), point, slope);
         if (share <= 1.0 && on_its_side(group, object, point))
-            covers.push_back({group.slot_of(object), share});
+            covers.push_back({group.styles[group.slot_of(object)].rank, group.slot_of(object), share});
         return true;
     });
     return covers;
@@ -57,7 +58,7 @@ std::vector<uint32_t> slots_at(const DecalGroup& group, LatticePoint point, cons
     std::vector<Cover> covers = covers_of(group, point, slope);
     // Strokes come segment by segment, along a curve even out of order.
     std::sort(covers.begin(), covers.end(),
-              [](Cover a, Cover b) { return a.slot != b.slot ? a.slot < b.slot : a.share < b.share; });
+              [](Cover a, Cover b) { return a.rank != b.rank ? a.rank < b.rank : a.share < b.share; });
     uint32_t last = NO_SLOT;
     for (const Cover& cover : covers) {
         if (cover.slot != last && band_shows(group, cover.slot, cover.share))
@@ -80,7 +81,7 @@ std::vector<FeatureReference> PreparedBvh::query(const SeenPoint& point) const {
     for (size_t group = groups.size(); group-- > 0;)
         for (const uint32_t slot : slots_at(groups[group], nearest, slope)) {
             // A feature may show more than one of its decals.
-            const FeatureReference feature = slots[groups[group].first_slot + slot];
+            const FeatureReference feature = groups[group].slots[slot].feature;
             if (seen.insert(uint64_t{feature.layer} << 32 | feature.feature).second)
                 found.push_back(feature);
         }

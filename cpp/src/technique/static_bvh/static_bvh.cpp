@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "decalgl/core/error.h"
@@ -26,34 +28,22 @@ bool by_coverage(const View& view, const bvh::DecalGroup& group) {
            group.kind == GroupKind::strokes;
 }
 
+// The share of a pixel that is inside the lens, or whether its centre is.
+void set_lens(Antialias antialias, const GBufferView& gbuffer, int unit, gl::Program& program) {
+    program.set("lens_texture", unit);
+    gbuffer.lens->bind(static_cast<GLuint>(unit));
+    program.set("by_share", antialias == Antialias::coverage);
+}
+
 [[noreturn]] void refuse_files() {
     throw Error(ErrorKind::unsupported,
                 "index 'bvh' is not kept on disk; prepare the scene with index 'grid'");
-}
-
-[[noreturn]] void refuse_changes() {
-    throw Error(
-        ErrorKind::unsupported,
-        "index 'bvh' stays as it was prepared; prepare the scene with index 'grid' to restyle or edit it");
 }
 
 }  // namespace
 
 void bvh::PreparedBvh::save(ArchiveWriter&, const std::string&) const {
     refuse_files();
-}
-
-std::shared_ptr<const Prepared> bvh::PreparedBvh::restyled(Span<const LayerLook>,
-                                                           const MemoryAccount&) const {
-    refuse_changes();
-}
-
-LayerLook bvh::PreparedBvh::look_of(uint32_t, size_t) const {
-    refuse_changes();
-}
-
-std::shared_ptr<const Prepared> bvh::PreparedBvh::edited(const LayerEdit&, const MemoryAccount&) const {
-    refuse_changes();
 }
 
 std::unique_ptr<const Prepared> StaticBvh::open(const ArchiveReader&, const std::string&,
@@ -65,21 +55,44 @@ std::unique_ptr<const Prepared> StaticBvh::preprocess(const TechniqueInput& inpu
     return bvh::build_bvh(input, progress);
 }
 
-void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared>,
+void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                        const TerrainView&, const MemoryAccount& memory) {
-    prepared_ = std::static_pointer_cast<const bvh::PreparedBvh>(std::move(prepared));
-    buffers_.clear();
-    for (const bvh::DecalGroup& group : prepared_->groups) {
-        std::vector<NamedBuffer>& buffers = buffers_.emplace_back();
-        const auto add = [&](const char* name, const char* account, GLenum format, const auto& values) {
-            buffers.push_back(
-                {name, gl::TextureBuffer::from(memory, account, format, Span(values.data(), values.size()))});
+    memory_ = memory;
+    upload(std::static_pointer_cast<const bvh::PreparedBvh>(std::move(prepared)), outside_, nullptr);
+    if (lens)
+        upload(std::static_pointer_cast<const bvh::PreparedBvh>(std::move(lens)), inside_, &outside_);
+    else
+        inside_ = {};
+    no_vertices_ = gl::VertexArray::create();
+}
+
+// What the other look holds already is shared with it.
+void StaticBvh::upload(std::shared_ptr<const bvh::PreparedBvh> prepared, Look& look,
+                       const Look* other) const {
+    look.buffers.resize(prepared->groups.size());
+    for (size_t i = 0; i < look.buffers.size(); ++i) {
+        const bvh::DecalGroup& group = prepared->groups[i];
+        const std::vector<NamedBuffer> before = std::exchange(look.buffers[i], {});
+        const std::vector<NamedBuffer> none;
+        const std::vector<NamedBuffer>& others = other != nullptr ? other->buffers[i] : none;
+        const auto add = [&](const char* name, const char* account, GLenum format, const auto& array) {
+            std::shared_ptr<gl::GrowingBuffer> buffer;
+            for (const NamedBuffer& each : before)
+                if (std::string_view(each.name) == name &&
+                    (each.buffer.use_count() == 1 || each.buffer->holds(array)))
+                    buffer = each.buffer;
+            for (const NamedBuffer& each : others)
+                if (std::string_view(each.name) == name && each.buffer->holds(array))
+                    buffer = each.buffer;
+            if (!buffer)
+                buffer = std::make_shared<gl::GrowingBuffer>();
+            buffer->upload(array, format, account, memory_);
+            look.buffers[i].push_back({name, std::move(buffer)});
         };
-        const bool with_looks = group.needs.corners || group.needs.hatches;
-        add("bvh_cells", "static_bvh: cells", GL_RG32UI, group.cells);
+        add("bvh_cells", "static_bvh: cells", GL_RGBA32UI, group.cells);
         add("bvh_nodes", "static_bvh: trees", GL_RGBA32I, group.nodes);
         add("bvh_styles", "static_bvh: styles", GL_RGBA32UI, group.styles);
-        if (with_looks)
+        if (group.needs.corners || group.needs.hatches)
             add("bvh_looks", "static_bvh: styles", GL_RGBA32UI, group.looks);
         if (group.kind != GroupKind::fills) {
             add("bvh_vertices", "static_bvh: vertices", GL_RG32I, group.vertices);
@@ -98,17 +111,19 @@ void StaticBvh::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr
         if (group.kind == GroupKind::both)
             add("bvh_objects", "static_bvh: objects", GL_RG32UI, group.objects);
     }
-    memory_ = memory;
-    no_vertices_ = gl::VertexArray::create();
+    look.prepared = std::move(prepared);
 }
 
 UpdateReport StaticBvh::update(const View&) {
     UpdateReport report;
-    report.pieces = prepared_->pieces;
-    for (const std::vector<NamedBuffer>& group : buffers_)
-        for (const NamedBuffer& each : group)
-            report.bytes += each.buffer.buffer().bytes();
-    report.longest_walk = prepared_->longest_walk;
+    report.pieces = outside_.prepared->pieces;
+    std::set<const gl::GrowingBuffer*> counted;
+    for (const Look* look : {&outside_, &inside_})
+        for (const std::vector<NamedBuffer>& group : look->buffers)
+            for (const NamedBuffer& each : group)
+                if (counted.insert(each.buffer.get()).second)
+                    report.bytes += each.buffer->bytes();
+    report.longest_walk = outside_.prepared->longest_walk;
     return report;
 }
 
@@ -117,21 +132,64 @@ void StaticBvh::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLi
     if (!view.has_below)
         glClearBufferfv(GL_COLOR, 0, nothing);
     glEnable(GL_BLEND);
+    if (inside_.prepared && gbuffer.lens != nullptr)
+        draw_through_lens(view, gbuffer, programs);
+    else
+        draw_look(view, gbuffer, programs);
+    glDisable(GL_BLEND);
+}
+
+void StaticBvh::draw_look(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    const bool in_samples =
-        std::any_of(prepared_->groups.begin(), prepared_->groups.end(),
-                    [&](const bvh::DecalGroup& group) { return !by_coverage(view, group); });
+    const auto& groups = drawn_->prepared->groups;
+    const bool in_samples = std::any_of(groups.begin(), groups.end(), [&](const bvh::DecalGroup& group) {
+        return !by_coverage(view, group);
+    });
     if (view.antialias == Antialias::coverage && in_samples)
         draw_samples(view, gbuffer, programs);
     else
-        draw_groups(0, buffers_.size(), {}, {}, view, gbuffer, programs);
-    glDisable(GL_BLEND);
+        draw_groups(0, groups.size(), {}, {}, view, gbuffer, programs);
+}
+
+// What is inside is drawn over a copy of what lies below, of which each pixel then takes its share.
+void StaticBvh::draw_through_lens(const View& view, const GBufferView& gbuffer,
+                                  gl::ProgramLibrary& programs) {
+    GLint target = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+    const int width = gbuffer.position->width(), height = gbuffer.position->height();
+    const Canvas inside = canvas(GL_RGBA8, width, height);
+    glBlitNamedFramebuffer(static_cast<GLuint>(target), inside.target.id(), 0, 0, width, height, 0, 0, width,
+                           height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    draw_look(view, gbuffer, programs);
+    inside.target.bind();
+    drawn_ = &inside_;
+    draw_look(view, gbuffer, programs);
+    drawn_ = &outside_;
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+    glViewport(0, 0, width, height);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_ALPHA);
+    gl::Program& program = programs.get("static_bvh_lens");
+    program.use();
+    program.set("inside", 0);
+    inside.picture.bind(0);
+    set_lens(view.antialias, gbuffer, 1, program);
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    // Framebuffers of several attachments take no second source, even where they do not blend.
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 }
 
 void StaticBvh::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const GLuint nothing[] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    draw_groups(0, buffers_.size(), {"IDS"}, {}, view, gbuffer, programs);
+    View centres = view;
+    centres.antialias = Antialias::none;
+    draw_groups(0, drawn_->prepared->groups.size(), {"IDS"}, {}, centres, gbuffer, programs);
+    if (!inside_.prepared || gbuffer.lens == nullptr)
+        return;
+    drawn_ = &inside_;
+    draw_groups(0, drawn_->prepared->groups.size(), {"IDS"}, {}, centres, gbuffer, programs);
+    drawn_ = &outside_;
 }
 
 // Neighbouring groups that are drawn in the same way: by coverage, or in samples.
@@ -153,8 +211,8 @@ StaticBvh::Canvas StaticBvh::canvas(GLenum format, int width, int height, const 
 
 std::vector<StaticBvh::Run> StaticBvh::runs_of(const View& view) const {
     std::vector<Run> runs;
-    for (size_t i = 0; i < buffers_.size(); ++i) {
-        const bool coverage = by_coverage(view, prepared_->groups[i]);
+    for (size_t i = 0; i < drawn_->prepared->groups.size(); ++i) {
+        const bool coverage = by_coverage(view, drawn_->prepared->groups[i]);
         if (runs.empty() || runs.back().by_coverage != coverage)
             runs.push_back({i, i, coverage, {}});
         runs.back().end = i + 1;
@@ -207,7 +265,7 @@ void StaticBvh::draw_runs(const std::vector<Run>& runs, const gl::Flags& flags, 
 void StaticBvh::add_samples(const Canvas& sum, const Canvas& sample, const std::vector<Run>& runs,
                             Strip strip, const View& view, const GBufferView& gbuffer,
                             gl::ProgramLibrary& programs) {
-    if (buffers_.size() == 1 && prepared_->longest_walk * BORDER_SAMPLES < most_turns) {
+    if (drawn_->buffers.size() == 1 && drawn_->prepared->longest_walk * BORDER_SAMPLES < most_turns) {
         strip.end_sample = BORDER_SAMPLES;
         draw_runs(runs, {"SAMPLES"}, strip, view, gbuffer, programs);
         return;
@@ -274,7 +332,8 @@ void StaticBvh::draw_samples(const View& view, const GBufferView& gbuffer, gl::P
 void StaticBvh::draw_groups(size_t begin, size_t end, const gl::Flags& flags, Strip strip, const View& view,
                             const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     for (size_t group = begin; group < end; ++group)
-        draw_group(group, flags, strip, view, gbuffer, programs);
+        if (drawn_->prepared->groups[group].has_shown)
+            draw_group(group, flags, strip, view, gbuffer, programs);
 }
 
 gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
@@ -284,8 +343,8 @@ gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
             flags.insert(flag);
     };
     const bool is_line = group.kind == GroupKind::strokes;
-    const bool hilbert = prepared_->options.segment_order == SegmentOrder::hilbert;
-    const bool nearest = is_line && prepared_->options.composition == Composition::nearest;
+    const bool hilbert = drawn_->prepared->options.segment_order == SegmentOrder::hilbert;
+    const bool nearest = is_line && drawn_->prepared->options.composition == Composition::nearest;
     add_if(group.kind == GroupKind::fills, "RINGS");
     add_if(group.kind == GroupKind::both, "BOTH");
     add_if(group.cut == OutlineMode::inset, "INSET");
@@ -295,6 +354,7 @@ gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
     add_if(group.needs.bands, "BANDS");
     add_if(group.needs.slopes, "SLOPES");
     add_if(group.needs.hatches, "HATCHES");
+    add_if(group.has_hidden, "HIDDEN");
     add_if(nearest, "NEAREST");
     add_if(is_line && !nearest && hilbert, "UNSORTED");
     return flags;
@@ -302,13 +362,16 @@ gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
 
 void StaticBvh::draw_group(size_t index, gl::Flags flags, Strip strip, const View& view,
                            const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
-    const bvh::DecalGroup& group = prepared_->groups[index];
-    const bvh::Lattice& lattice = prepared_->lattice;
+    const bvh::DecalGroup& group = drawn_->prepared->groups[index];
+    const bvh::Lattice& lattice = drawn_->prepared->lattice;
     flags.merge(flags_of(group));
     if (flags.count("IDS") == 0 && by_coverage(view, group)) {
         flags.erase("UNSORTED");
         flags.insert("THOENY");
     }
+    const bool has_lens = inside_.prepared && gbuffer.lens != nullptr;
+    if (has_lens)
+        flags.insert("LENS");
     gl::Program& program = programs.get("static_bvh", flags);
     program.use();
     program.set("position_texture", 0);
@@ -325,9 +388,13 @@ void StaticBvh::draw_group(size_t index, gl::Flags flags, Strip strip, const Vie
         program.set("border_texture", unit);
         strip.borders->bind(static_cast<GLuint>(unit++));
     }
-    for (const NamedBuffer& each : buffers_[index]) {
+    if (has_lens) {
+        set_lens(view.antialias, gbuffer, unit++, program);
+        program.set("inside", drawn_ == &inside_);
+    }
+    for (const NamedBuffer& each : drawn_->buffers[index]) {
         program.set(each.name, unit);
-        each.buffer.bind(static_cast<GLuint>(unit++));
+        each.buffer->bind(static_cast<GLuint>(unit++));
     }
     const bvh::LatticeBox& box = group.grid.box;
     program.set("grid_box", glm::ivec4(box.min_x, box.min_y, box.max_x, box.max_y));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "decalgl/technique/technique.h"
-#include "gl/buffer.h"
+#include "gl/growing_buffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
@@ -27,7 +27,13 @@ private:
     // A buffer with the name that the shaders give it.
     struct NamedBuffer {
         const char* name;
-        gl::TextureBuffer buffer;
+        std::shared_ptr<gl::GrowingBuffer> buffer;
+    };
+
+    // An index, and the buffers of each of its groups.
+    struct Look {
+        std::shared_ptr<const bvh::PreparedBvh> prepared;
+        std::vector<std::vector<NamedBuffer>> buffers;
     };
 
     // Rows of the picture, and which samples of its pixels, at places that follow these borders.
@@ -46,6 +52,9 @@ private:
 
     struct Run;
 
+    void upload(std::shared_ptr<const bvh::PreparedBvh> prepared, Look& look, const Look* other) const;
+    void draw_look(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void draw_through_lens(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
     Canvas canvas(GLenum format, int width, int height, const gl::Texture2D* depth = nullptr) const;
     std::vector<Run> runs_of(const View& view) const;
     void lay(const Canvas& from, int first_row, float share, gl::ProgramLibrary& programs) const;
@@ -62,8 +71,8 @@ private:
                     gl::ProgramLibrary& programs);
     gl::Flags flags_of(const bvh::DecalGroup& group) const;
 
-    std::shared_ptr<const bvh::PreparedBvh> prepared_;
-    std::vector<std::vector<NamedBuffer>> buffers_;  // of each group
+    Look outside_, inside_;  // the lens; nothing is inside without one
+    const Look* drawn_ = &outside_;
     gl::VertexArray no_vertices_;
     MemoryAccount memory_;
 };

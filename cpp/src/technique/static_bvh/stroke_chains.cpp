@@ -201,7 +201,7 @@ private:
 class ChainLayer {
 public:
     ChainLayer(const TechniqueInput& input, Span<const StrokeSlot> strokes, const Lattice& lattice,
-               DecalGroup& group, MemoryCharge& charge, WorkingArray<Segment>& segments)
+               GroupBuild& group, MemoryCharge& charge, WorkingArray<Segment>& segments)
         : input_(input),
           strokes_(strokes),
           lattice_(lattice),
@@ -299,7 +299,7 @@ private:
     const TechniqueInput& input_;
     Span<const StrokeSlot> strokes_;
     const Lattice& lattice_;
-    DecalGroup& group_;
+    GroupBuild& group_;
     MemoryCharge& charge_;
     WorkingArray<Segment>& segments_;
     std::vector<Part> parts_;
@@ -308,7 +308,7 @@ private:
 }  // namespace
 
 void lay_chains(const TechniqueInput& input, Span<const StrokeSlot> strokes, const Lattice& lattice,
-                DecalGroup& group, MemoryCharge& charge, WorkingArray<Segment>& segments) {
+                GroupBuild& group, MemoryCharge& charge, WorkingArray<Segment>& segments) {
     ChainLayer(input, strokes, lattice, group, charge, segments).lay();
 }
 

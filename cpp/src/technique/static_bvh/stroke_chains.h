@@ -24,6 +24,6 @@ struct StrokeSlot {
 // Lays the chains of strokes, given topmost first, into the group's vertices and owners, and lists their
 // segments.
 void lay_chains(const TechniqueInput& input, Span<const StrokeSlot> strokes, const Lattice& lattice,
-                DecalGroup& group, MemoryCharge& charge, WorkingArray<Segment>& segments);
+                GroupBuild& group, MemoryCharge& charge, WorkingArray<Segment>& segments);
 
 }  // namespace decalgl::bvh

@@ -55,7 +55,7 @@ double end_reach(const StrokeLook& look, Vector2 from, Vector2 incoming, Vector2
 
 double styled_reach(const DecalGroup& group, Segment segment, double half_width, const StrokeLook& look,
                     LatticePoint point, const Slope& slope) {
-    const LargeArray<LatticePoint>& at = group.vertices;
+    const GrownArray<LatticePoint>& at = group.vertices;
     const Run run = run_of(segment);
     const auto measured = [&](LatticePoint from, LatticePoint to) {
         return look.slope == SlopeCorrection::tangent ? slope.tangent(way(from, to)) : way(from, to);

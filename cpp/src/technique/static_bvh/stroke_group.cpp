@@ -9,7 +9,7 @@ constexpr size_t segments_at_once = 1 << 14;
 
 }  // namespace
 
-StrokeBuilder::StrokeBuilder(const TechniqueInput& input, std::vector<StrokeSlot> strokes, DecalGroup& group,
+StrokeBuilder::StrokeBuilder(const TechniqueInput& input, std::vector<StrokeSlot> strokes, GroupBuild& group,
                              MemoryCharge& charge)
     : input_(input),
       strokes_(std::move(strokes)),
@@ -86,16 +86,15 @@ WorkingArray<uint32_t> StrokeBuilder::write_segments(const Stage& stage) {
 void StrokeBuilder::sort_along_curve(Span<uint32_t> records) const {
     std::vector<std::pair<uint32_t, uint32_t>> places(records.size());
     for (size_t i = 0; i < records.size(); ++i)
-        places[i] = {place_on_curve(laid_.values[records[i]]), records[i]};
+        places[i] = {place_on_curve(laid_.values[records[i]], group_.vertices, group_.grid.box), records[i]};
     std::stable_sort(places.begin(), places.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     for (size_t i = 0; i < records.size(); ++i)
         records[i] = places[i].second;
 }
 
-uint32_t StrokeBuilder::place_on_curve(const Segment& segment) const {
-    const LatticePoint a = group_.vertices[segment.first()], b = group_.vertices[segment.second()];
-    const LatticeBox& box = group_.grid.box;
+uint32_t place_on_curve(const Segment& segment, Span<const LatticePoint> vertices, const LatticeBox& box) {
+    const LatticePoint a = vertices[segment.first()], b = vertices[segment.second()];
     const auto middle = [](int64_t p, int64_t q, int64_t low, int64_t high) {
         return static_cast<uint32_t>((std::clamp((p + q) / 2, low, high) - low) * 0xFFFF /
                                      std::max<int64_t>(high - low, 1));

@@ -7,10 +7,13 @@
 
 namespace decalgl::bvh {
 
+// Along a Hilbert curve through a grid's box.
+uint32_t place_on_curve(const Segment& segment, Span<const LatticePoint> vertices, const LatticeBox& box);
+
 class StrokeBuilder {
 public:
     // `strokes` in the order of their slots.
-    StrokeBuilder(const TechniqueInput& input, std::vector<StrokeSlot> strokes, DecalGroup& group,
+    StrokeBuilder(const TechniqueInput& input, std::vector<StrokeSlot> strokes, GroupBuild& group,
                   MemoryCharge& charge);
 
     // First: vertices and segments, as they come.
@@ -24,12 +27,11 @@ private:
     StrokeOutline outline_of(Segment segment) const;
     CellRecords records(const Stage& stage) const;
     void sort_along_curve(Span<uint32_t> records) const;
-    uint32_t place_on_curve(const Segment& segment) const;
 
     const TechniqueInput& input_;
     std::vector<StrokeSlot> strokes_;
     std::vector<uint32_t> stroke_of_slot_;
-    DecalGroup& group_;
+    GroupBuild& group_;
     MemoryCharge& charge_;
     WorkingArray<Segment> laid_;
 };

@@ -46,7 +46,7 @@ uint64_t walk_in(const DecalGroup& group, uint32_t cell, const LatticeBox& box) 
         return true;
     };
     const uint32_t nodes =
-        traverse(group.nodes.data() + start.node, group.objects_in(cell), reached, on_object);
+        traverse(group.nodes.data() + start.node, group.cells[cell].count, reached, on_object);
     return nodes + below;
 }
 
@@ -66,12 +66,19 @@ uint64_t longest_walk_in(const DecalGroup& group, uint32_t cell) {
 
 }  // namespace
 
+uint64_t longest_walk(const DecalGroup& group, Span<const uint32_t> cells) {
+    uint64_t longest = 0;
+    for (const uint32_t cell : cells)
+        longest = std::max(longest, group.cells[cell].count > 0 ? longest_walk_in(group, cell) : 0);
+    return longest;
+}
+
 uint64_t longest_walk(const DecalGroup& group, unsigned threads) {
     std::vector<uint64_t> longest(block_count(group.grid.cell_count(), cells_at_once), 0);
     parallel_for(group.grid.cell_count(), cells_at_once, threads, [&](size_t begin, size_t end) {
         for (size_t cell = begin; cell < end; ++cell) {
             uint64_t& most = longest[begin / cells_at_once];
-            if (group.objects_in(static_cast<uint32_t>(cell)) > 0)
+            if (group.cells[cell].count > 0)
                 most = std::max(most, longest_walk_in(group, static_cast<uint32_t>(cell)));
         }
     });

@@ -7,5 +7,7 @@ namespace decalgl::bvh {
 
 // An upper bound over all points of the group's grid.
 uint64_t longest_walk(const DecalGroup& group, unsigned threads);
+// Over those of some of its cells.
+uint64_t longest_walk(const DecalGroup& group, Span<const uint32_t> cells);
 
 }  // namespace decalgl::bvh

@@ -12,8 +12,8 @@
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
+#include "technique/layer_sources.h"
 #include "technique/static_decals/bucket_builder.h"
-#include "technique/static_decals/layer_sources.h"
 #include "technique/static_decals/local_build.h"
 #include "technique/static_decals/prepared_decals.h"
 #include "technique/static_decals/resolution.h"
@@ -43,15 +43,6 @@ void require_addressable(const TechniqueInput& input, size_t slots) {
     if (slots > SLOT_MASK)
         throw Error(ErrorKind::memory, "static: more than " + std::to_string(SLOT_MASK) +
                                            " features in one scene; draw a smaller part of the map at once");
-}
-
-std::vector<LayerRules> rules_of(const TechniqueInput& input) {
-    std::vector<LayerRules> rules(input.first_layer, LayerRules{0.0, 0.0, 0.5, 0});
-    for (const Layer& layer : input.layers)
-        rules.push_back({layer.stroke.widest, layer.casing.widest,
-                         layer.outline_mode == OutlineMode::normal ? 0.5 : 1.0,
-                         layer.outline_order == OutlineOrder::feature ? uint64_t{1} : uint64_t{0}});
-    return rules;
 }
 
 // By layers alone, so that a part of a scene has what the whole has.
@@ -216,8 +207,8 @@ void place_chunk(const CellChunk& chunk, const ChunkPlace& place, size_t first_b
 void charge_arrays(const MemoryAccount& memory, PreparedDecals& decals) {
     const std::string name = "static: prepared";
     decals.bucket_entries = charged(decals.bucket_entries, memory, name);
-    decals.cells = charged(decals.cells, memory, name);
-    decals.words = charged(decals.words, memory, name);
+    decals.cells = charged(decals.cells.values(), memory, name);
+    decals.words = charged(decals.words.values(), memory, name);
     decals.styles = charged(decals.styles, memory, name);
     decals.kinds = charged(decals.kinds, memory, name);
     decals.style_records = charged(decals.style_records, memory, name);

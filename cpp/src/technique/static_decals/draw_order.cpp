@@ -1,13 +1,13 @@
 #include "technique/static_decals/draw_order.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "core/growing_array.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
-#include "technique/decal_looks.h"
 
 namespace decalgl {
 namespace {
@@ -39,27 +39,8 @@ void ListSorter::sort(uint32_t* words, size_t count) {
     std::copy(sorted_.begin(), sorted_.end(), words);
 }
 
-void reorder(const LayerLook& look, PreparedDecals& decals) {
-    const OutlineOrder outlines =
-        decals.rules[look.layer].outlines_by_feature != 0 ? OutlineOrder::feature : OutlineOrder::layer;
-    const std::vector<uint32_t> own = upwards(decals.slots, look.layer, look.draw_order, outlines);
-    LargeArray<uint32_t> ranks;
-    ranks.resize(decals.slots.size());
-    for (uint32_t slot = 0; slot < ranks.size(); ++slot)
-        ranks[slot] = decals.rank_of(slot);
-    // They share the ranks that they had.
-    std::vector<bool> is_theirs(ranks.size(), false);
-    for (const uint32_t slot : own)
-        is_theirs[ranks[slot]] = true;
-    size_t left = own.size();
-    for (uint32_t rank = 0; rank < is_theirs.size(); ++rank)
-        if (is_theirs[rank])
-            ranks[own[--left]] = rank;
-    decals.ranks = std::move(ranks);
-}
-
 void sort_lists(PreparedDecals& decals, const MemoryAccount& memory) {
-    const SharedArray<uint32_t> before = decals.words;
+    const SharedArray<uint32_t> before = decals.words.values();
     LargeArray<uint32_t> words;
     words.resize(before.size());
     parallel_for(words.size(), block_cells * 64, 0, [&](size_t begin, size_t end) {
@@ -76,7 +57,6 @@ void sort_lists(PreparedDecals& decals, const MemoryAccount& memory) {
         }
     });
     decals.words = charged(SharedArray<uint32_t>(std::move(words)), memory, "static: prepared");
-    decals.growing_words = {};
 }
 
 }  // namespace decalgl

@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "decalgl/core/error.h"
+#include "technique/layer_sources.h"
+#include "technique/slot_ranks.h"
 #include "technique/static_decals/draw_order.h"
-#include "technique/static_decals/layer_sources.h"
 #include "technique/static_decals/local_build.h"
 
 namespace decalgl {
@@ -171,10 +172,19 @@ private:
         return charged(SharedArray<T>(std::move(values)), memory_, account);
     }
 
+    static SharedArray<uint32_t> kinds_of(const PreparedDecals& local) {
+        if (!local.kinds.empty())
+            return local.kinds;
+        LargeArray<uint32_t> kinds;
+        for (uint32_t slot = 0; slot < local.slots.size(); ++slot)
+            kinds.push_back(static_cast<uint32_t>(local.scale_of(slot)));
+        return {std::move(kinds)};
+    }
+
     void add_slots(const PreparedDecals& local) {
         if (added_.empty())
             return;
-        if (before_.kinds.empty() != local.kinds.empty())
+        if (before_.kinds.empty() && !local.kinds.empty())
             throw Error(
                 ErrorKind::unsupported,
                 "what is added would be the first of its kind in the scene; prepare the scene anew with it");
@@ -186,54 +196,18 @@ private:
         }
         result_->slots = charged(SharedArray<Decal>(std::move(slots)), memory_, account);
         result_->styles = with_added(before_.styles, local.styles);
-        if (!local.kinds.empty())
-            result_->kinds = with_added(before_.kinds, local.kinds);
+        if (!before_.kinds.empty())
+            result_->kinds = with_added(before_.kinds, kinds_of(local));
         result_->has_lines |= local.has_lines;
         result_->has_polygons |= local.has_polygons;
         result_->largest_scale = std::max(result_->largest_scale, local.largest_scale);
         result_->segments += edit_.geometry.vertex_count();
-        rank_added(local);
-    }
-
-    // Where a decal stands among those of all layers, roughly: decals of one class lie next to each other.
-    std::pair<uint32_t, int> class_of(const Decal& decal) const {
-        const bool by_feature = before_.rules[decal.feature.layer].outlines_by_feature != 0;
-        const bool lies_below = decal.role == DecalRole::fill || decal.role == DecalRole::casing;
-        return {decal.feature.layer, by_feature || lies_below ? 0 : 1};
-    }
-
-    // Added decals come right above all others of their class: `above[class]` of the old ones stay above them.
-    void rank_added(const PreparedDecals& local) {
-        const size_t old_count = before_.slots.size();
-        std::vector<std::pair<uint32_t, int>> classes;
+        std::vector<Decal> added;
         for (const uint32_t slot : added_)
-            classes.push_back(class_of(local.slots[slot]));
-        std::vector<uint32_t> above(classes.size(), 0);
-        std::vector<std::pair<std::pair<uint32_t, int>, uint32_t>> counted;  // old decals above a class
-        for (const auto& one : classes) {
-            if (std::none_of(counted.begin(), counted.end(), [&](const auto& c) { return c.first == one; }))
-                counted.emplace_back(one, 0);
-        }
-        for (auto& [one, count] : counted)
-            for (size_t slot = 0; slot < old_count; ++slot)
-                count += class_of(before_.slots[slot]) > one ? 1 : 0;
-        for (size_t i = 0; i < classes.size(); ++i)
-            above[i] = std::find_if(counted.begin(), counted.end(), [&](const auto& c) {
-                           return c.first == classes[i];
-                       })->second;
-        // Local slots are in draw order, topmost first, and so are their classes.
-        LargeArray<uint32_t> ranks;
-        ranks.resize(old_count + added_.size());
-        std::vector<uint32_t> shift(old_count + 1, 0);
-        for (const uint32_t place : above)
-            ++shift[place];
-        for (size_t i = 1; i < shift.size(); ++i)
-            shift[i] += shift[i - 1];
-        for (uint32_t slot = 0; slot < old_count; ++slot)
-            ranks[slot] = before_.rank_of(slot) + shift[before_.rank_of(slot)];
-        for (uint32_t i = 0; i < added_.size(); ++i)
-            ranks[old_count + i] = above[i] + i;
-        result_->ranks = charged(SharedArray<uint32_t>(std::move(ranks)), memory_, account);
+            added.push_back(local.slots[slot]);
+        result_->ranks = charged(
+            SharedArray<uint32_t>(ranks_with_added(before_.slots, before_.ranks, added, before_.rules)),
+            memory_, account);
     }
 
     void append_lists(const CellChunk& chunk) {
@@ -258,12 +232,8 @@ private:
         LargeArray<uint32_t> entries(before_.bucket_entries.begin(), before_.bucket_entries.end());
         for (size_t i = 0; i < buckets_.size(); ++i)
             entries[buckets_[i]] = chunk.bucket_entries[i] + static_cast<uint32_t>(first_cell << LEVEL_BITS);
-        result_->growing_words =
-            before_.growing_words.appended(before_.words, Span<const uint32_t>(words), memory_, account);
-        result_->growing_cells =
-            before_.growing_cells.appended(before_.cells, Span<const uint32_t>(cells), memory_, account);
-        result_->words = result_->growing_words.values();
-        result_->cells = result_->growing_cells.values();
+        result_->words.append(Span<const uint32_t>(words), memory_, account);
+        result_->cells.append(Span<const uint32_t>(cells), memory_, account);
         result_->bucket_entries = charged(SharedArray<uint32_t>(std::move(entries)), memory_, account);
     }
 
@@ -285,8 +255,6 @@ private:
                 words.insert(words.end(), first, first + words_of(*result_, cell));
             }
         }
-        result_->growing_words = {};
-        result_->growing_cells = {};
         result_->unused_words = 0;
         result_->bucket_entries = charged(SharedArray<uint32_t>(std::move(entries)), memory_, account);
         result_->cells = charged(SharedArray<uint32_t>(std::move(cells)), memory_, account);
@@ -307,11 +275,18 @@ private:
 
 }  // namespace
 
+std::shared_ptr<const Prepared> PreparedDecals::with_sources(const TechniqueInput& input) const {
+    auto result = std::make_shared<PreparedDecals>(*this);
+    result->sources = std::make_shared<const LayerSources>(input);
+    return result;
+}
+
 std::shared_ptr<const Prepared> PreparedDecals::edited(const LayerEdit& edit,
                                                        const MemoryAccount& memory) const {
     if (!sources)
         throw Error(ErrorKind::unsupported,
-                    "a scene that was opened from a file has no vertices to edit; prepare it from its data");
+                    "a scene that was opened from a file has no vertices to edit; prepare it from its data, "
+                    "with the file as cache");
     return Edit(*this, edit, memory).run();
 }
 

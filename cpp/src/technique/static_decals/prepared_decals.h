@@ -9,6 +9,8 @@
 #include "core/growing_array.h"
 #include "decalgl/core/shared_array.h"
 #include "decalgl/technique/technique.h"
+#include "technique/layer_rules.h"
+#include "technique/layer_sources.h"
 #include "technique/static_decals/bucket_grid.h"
 #include "technique/static_decals/style_table.h"
 
@@ -20,17 +22,6 @@ struct DecalStyle {
     float half_width;  // quanta; 0 for polygons
 };
 static_assert(sizeof(DecalStyle) == 8, "read as one RG32UI texel");
-
-// What restyling a layer has to know of it. Without padding, since it goes into files.
-struct LayerRules {
-    double stroke_widest;  // metres; 0: widths are fixed
-    double casing_widest;
-    double half_width_per_width;   // 1 where an outline lies on one side of its border alone, else 0.5
-    uint64_t outlines_by_feature;  // whether each outline lies over its own fill, else over all
-};
-static_assert(sizeof(LayerRules) == 32, "saved as it is");
-
-class LayerSources;
 
 struct LookToken {};
 struct ShapeToken {};
@@ -47,6 +38,7 @@ public:
     std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                              const MemoryAccount& memory) const override;
 
+    std::shared_ptr<const Prepared> with_sources(const TechniqueInput& input) const override;
     std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
 
     // Works out what styles have in common, from `widest` to `one_color`.
@@ -63,8 +55,8 @@ public:
     BucketGrid grid;
     // As cell_lists.h says.
     SharedArray<uint32_t> bucket_entries;
-    SharedArray<uint32_t> cells;
-    SharedArray<uint32_t> words;
+    GrownArray<uint32_t> cells;
+    GrownArray<uint32_t> words;
     SharedArray<DecalStyle> styles;
     SharedArray<uint32_t> kinds;  // of each slot, as style_records.h says; empty where all are plain
     SharedArray<StyleTexel> style_records;
@@ -88,8 +80,6 @@ public:
     std::array<uint8_t, 4> one_color{};
     // What edits need: null, and so refused, for an index that was opened from a file.
     std::shared_ptr<const LayerSources> sources;
-    GrowingArray<uint32_t> growing_cells;  // cells and words, once edits have added to them
-    GrowingArray<uint32_t> growing_words;
     uint64_t unused_words = 0;  // of lists that edits have replaced
     // Where two indexes share it, buckets with the same entry look the same in both; or the same decals cover the same
     // points in both.

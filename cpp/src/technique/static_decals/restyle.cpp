@@ -11,43 +11,15 @@
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 #include "technique/decal_looks.h"
+#include "technique/slot_ranks.h"
 #include "technique/static_decals/draw_order.h"
 #include "technique/static_decals/prepared_decals.h"
+#include "technique/style_changes.h"
 
 namespace decalgl {
 namespace {
 
 constexpr size_t block_slots = 1 << 15;
-
-double widest_of(const LayerRules& rules, DecalRole role) {
-    return role == DecalRole::casing ? rules.casing_widest : rules.stroke_widest;
-}
-
-// Widths that the index was not made for are refused before anything is changed.
-void require_widths(const LayerLook& look, const PreparedDecals& decals) {
-    for (const DecalRole role : {DecalRole::stroke, DecalRole::casing}) {
-        const std::vector<double>& widths = look.of(role)->widths;
-        if (widths.empty())
-            continue;
-        const double widest = widest_of(decals.rules[look.layer], role);
-        if (widest <= 0.0)
-            throw Error(
-                ErrorKind::style,
-                "its widths are fixed, since it was prepared without widest; say with widest, where the "
-                "layer is made, how wide its lines may become");
-        const double wanted = *std::max_element(widths.begin(), widths.end());
-        if (wanted > widest)
-            throw Error(ErrorKind::style,
-                        "a width of " + std::to_string(wanted) +
-                            " m is more than it was prepared for; make the layer with a widest "
-                            "above its " +
-                            std::to_string(widest) + " m");
-    }
-}
-
-bool has_widths(const LayerLook& look) {
-    return !look.stroke.widths.empty() || !look.casing.widths.empty();
-}
 
 void apply(const DecalLook& look, const Decal& slot, double half_widths_per_metre, DecalStyle& style) {
     const size_t feature = slot.feature.feature;
@@ -103,6 +75,38 @@ struct StyleSummary {
     }
 };
 
+// Other records after those that there are, and which slots go by them.
+void change_records(Span<const LayerLook> looks, PreparedDecals& decals, const MemoryAccount& memory) {
+    const std::vector<Layer> layers = layers_of_styles(looks, decals.rules.size());
+    TechniqueInput input;
+    input.layers = layers;
+    const StyleTable table(input, decals.grid);
+    LargeArray<StyleTexel> records(decals.style_records.begin(), decals.style_records.end());
+    if (records.empty())
+        records.push_back({});
+    const auto offset = static_cast<uint32_t>(records.size()) - 1;
+    records.insert(records.end(), table.texels().begin() + 1, table.texels().end());
+    LargeArray<uint32_t> kinds;
+    kinds.resize(decals.slots.size());
+    uint32_t flags = decals.style_flags & STYLE_WIDENED;
+    for (uint32_t i = 0; i < kinds.size(); ++i) {
+        const Decal& slot = decals.slots[i];
+        kinds[i] = decals.kinds.empty() ? static_cast<uint32_t>(decals.scale_of(i)) : decals.kinds[i];
+        const Layer& layer = layers[slot.feature.layer];
+        const bool changes = slot.is_stroke()
+                                 ? !(slot.role == DecalRole::casing ? layer.casing : layer.stroke).empty()
+                                 : slot.role == DecalRole::fill && !layer.fill.empty();
+        if (changes) {
+            const uint32_t record = table.record_of(slot);
+            kinds[i] = (record == 0 ? 0 : record + offset) << SCALE_BITS | (kinds[i] & SCALE_MASK);
+        }
+        flags |= records[kinds[i] >> SCALE_BITS][0];
+    }
+    decals.kinds = charged(SharedArray<uint32_t>(std::move(kinds)), memory, "static: prepared");
+    decals.style_records = charged(SharedArray<StyleTexel>(std::move(records)), memory, "static: prepared");
+    decals.style_flags = flags;
+}
+
 }  // namespace
 
 void PreparedDecals::summarise_styles() {
@@ -139,7 +143,8 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
     for (const LayerLook& look : looks) {
         if (look.layer >= rules.size())
             continue;
-        require_widths(look, *this);
+        require_widths(look, rules[look.layer]);
+        require_styles(look, sources.get(), slots, CornerRoom::disc);
         look_of[look.layer] = &look;
     }
     auto result = std::make_shared<PreparedDecals>(*this);
@@ -158,12 +163,14 @@ std::shared_ptr<const Prepared> PreparedDecals::restyled(Span<const LayerLook> l
     });
     result->styles = charged(SharedArray<DecalStyle>(std::move(changed)), memory, "static: prepared");
     result->look_token = std::make_shared<const LookToken>();
-    if (std::any_of(looks.begin(), looks.end(), has_widths))
+    if (has_styles(looks))
+        change_records(looks, *result, memory);
+    if (has_styles(looks) || std::any_of(looks.begin(), looks.end(), has_widths))
         result->shape_token = std::make_shared<const ShapeToken>();
     result->summarise_styles();
     for (const LayerLook& look : looks)
         if (!look.draw_order.empty() && look.layer < rules.size())
-            reorder(look, *result);
+            result->ranks = reordered_ranks(look, rules[look.layer], slots, result->ranks);
     const bool is_reordered = std::any_of(looks.begin(), looks.end(),
                                           [](const LayerLook& look) { return !look.draw_order.empty(); });
     if (is_reordered)

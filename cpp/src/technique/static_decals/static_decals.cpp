@@ -33,25 +33,19 @@ void set_grid(const BucketGrid& grid, gl::Program& program) {
 }
 
 // Arrays are written once, so those at one place hold the same.
-template <typename T>
-bool is_same(const SharedArray<T>& a, const SharedArray<T>& b) {
+template <typename Array>
+bool is_same(const Array& a, const Array& b) {
     return a.data() == b.data() && a.size() == b.size();
 }
 
-bool has_styles(const PreparedDecals& decals) {
-    return decals.kinds.size() > 0;
-}
-
-void add_record_flags(const PreparedDecals& decals, gl::Flags& flags) {
-    if (!has_styles(decals))
-        return;
+void add_record_flags(uint32_t style_flags, gl::Flags& flags) {
     flags.insert("STYLES");
     const std::pair<uint32_t, const char*> each[] = {{STYLE_JOINED, "JOINED"},
                                                      {STYLE_PATTERN, "PATTERNS"},
                                                      {STYLE_HATCH, "HATCHES"},
                                                      {STYLE_TANGENT | STYLE_THOENY, "SLOPES"}};
     for (const auto& [bit, flag] : each) {
-        if ((decals.style_flags & bit) != 0)
+        if ((style_flags & bit) != 0)
             flags.insert(flag);
     }
 }
@@ -80,10 +74,13 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
             buffer = gl::TextureBuffer::from(memory_, name, format, ((*next).*array).span());
     };
     refresh("static: buckets", GL_R32UI, &PreparedDecals::bucket_entries, buckets_);
-    cells_.upload(next->cells, next->growing_cells, GL_R32UI, "static: cells", memory_);
-    texels_.upload(next->words, next->growing_words, GL_RGBA32UI, "static: words", memory_);
-    refresh("static: styles", GL_R32UI, &PreparedDecals::kinds, kinds_);
-    refresh("static: styles", GL_RGBA32UI, &PreparedDecals::style_records, style_records_);
+    cells_.upload(next->cells, GL_R32UI, "static: cells", memory_);
+    texels_.upload(next->words, GL_RGBA32UI, "static: words", memory_);
+    if (next_lens && !is_same(next->words, next_lens->words))
+        lens_texels_.upload(next_lens->words, GL_RGBA32UI, "static: words", memory_);
+    else
+        lens_texels_ = {};
+    upload_records(*next, next_lens.get());
     upload_styles(next.get(), next_lens.get());
     refresh_levels(*next, next_lens.get());
     if (!no_vertices_)
@@ -135,6 +132,40 @@ void StaticDecals::draw_levels(const PreparedDecals& look, LevelPainter& painter
     levels.is_drawn = true;
 }
 
+// With a lens, its kinds and records follow the others.
+void StaticDecals::upload_records(const PreparedDecals& prepared, const PreparedDecals* lens) {
+    if (prepared.kinds.empty() && (lens == nullptr || lens->kinds.empty())) {
+        kinds_ = gl::TextureBuffer();
+        style_records_ = gl::TextureBuffer();
+        return;
+    }
+    const auto same_as = [](const PreparedDecals* a, const PreparedDecals* b) {
+        return a != nullptr && b != nullptr && is_same(a->kinds, b->kinds);
+    };
+    const bool stays = same_as(prepared_.get(), &prepared) &&
+                       (lens == nullptr ? lens_ == nullptr : same_as(lens_.get(), lens));
+    if (stays)
+        return;
+    kinds_ = gl::TextureBuffer();
+    style_records_ = gl::TextureBuffer();
+    std::vector<uint32_t> kinds;
+    std::vector<StyleTexel> records;
+    for (const PreparedDecals* look : {&prepared, lens}) {
+        if (look == nullptr || (look == lens && is_same(look->kinds, prepared.kinds)))
+            continue;
+        const auto first = static_cast<uint32_t>(records.size());
+        for (uint32_t slot = 0; slot < look->slots.size(); ++slot)
+            kinds.push_back(look->kinds.empty()
+                                ? first << SCALE_BITS | static_cast<uint32_t>(look->scale_of(slot))
+                                : look->kinds[slot] + (first << SCALE_BITS));
+        records.insert(records.end(), look->style_records.begin(), look->style_records.end());
+        if (look->style_records.empty())
+            records.push_back({});
+    }
+    kinds_ = gl::TextureBuffer::from(memory_, "static: styles", GL_R32UI, kinds);
+    style_records_ = gl::TextureBuffer::from(memory_, "static: styles", GL_RGBA32UI, records);
+}
+
 // Into the buffer that is there, where it is as large as needed: a restyle allocates nothing.
 void StaticDecals::upload_styles(const PreparedDecals* prepared, const PreparedDecals* lens) {
     const size_t bytes = prepared->styles.size_bytes();
@@ -182,18 +213,18 @@ UpdateReport StaticDecals::update(const View& view) {
                     lens_levels_);
     UpdateReport report;
     report.pieces = prepared_->pieces;
-    report.bytes = buckets_.buffer().bytes() + cells_.bytes() + texels_.bytes() + styles_.buffer().bytes() +
-                   kinds_.buffer().bytes() + style_records_.buffer().bytes() + half_planes_.buffer().bytes() +
-                   levels_.texture.bytes() + lens_levels_.texture.bytes();
+    report.bytes = buckets_.buffer().bytes() + cells_.bytes() + texels_.bytes() + lens_texels_.bytes() +
+                   styles_.buffer().bytes() + kinds_.buffer().bytes() + style_records_.buffer().bytes() +
+                   half_planes_.buffer().bytes() + levels_.texture.bytes() + lens_levels_.texture.bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
 
 void StaticDecals::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     gl::Flags flags;
-    const bool has_bands = (prepared_->style_flags & STYLE_BANDS) != 0;
-    const bool has_one_color =
-        prepared_->has_one_color && !prepared_->has_hidden && !lens_ && !has_styles(*prepared_);
+    const bool has_bands =
+        any_look([](const PreparedDecals& look) { return (look.style_flags & STYLE_BANDS) != 0; });
+    const bool has_one_color = prepared_->has_one_color && !prepared_->has_hidden && !lens_ && !has_styles();
     if (has_bands)
         flags.insert("BANDS");
     if (has_bands || any_look([](const PreparedDecals& look) { return look.has_translucency; }))
@@ -252,8 +283,9 @@ void StaticDecals::add_style_flags(gl::Flags& flags) const {
         flags.insert("LINES");
     if (prepared_->has_polygons)
         flags.insert("RINGS");
-    add_record_flags(*prepared_, flags);
-    const bool styled = has_styles(*prepared_) || flags.count("THOENY") != 0;
+    if (has_styles())
+        add_record_flags(prepared_->style_flags | (lens_ ? lens_->style_flags : 0), flags);
+    const bool styled = has_styles() || flags.count("THOENY") != 0;
     if (prepared_->has_lines && !styled && prepared_->narrowest == prepared_->widest &&
         !any_look([&](const PreparedDecals& look) {
             return look.narrowest != prepared_->narrowest || look.widest != prepared_->widest;
@@ -265,6 +297,14 @@ void StaticDecals::add_style_flags(gl::Flags& flags) const {
         flags.insert("HIDDEN");
     if (lens_)
         flags.insert("LENS");
+    if (lens_texels_)
+        flags.insert("LENS_LISTS");
+    if (lens_ && !is_same(lens_->kinds, prepared_->kinds))
+        flags.insert("LENS_KINDS");
+}
+
+bool StaticDecals::has_styles() const {
+    return any_look([](const PreparedDecals& look) { return !look.kinds.empty(); });
 }
 
 void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
@@ -293,7 +333,7 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
         program.set("half_planes", 11);
         half_planes_.bind(11);
     }
-    if (has_styles(*prepared_) || flags.count("THOENY") != 0) {
+    if (has_styles() || flags.count("THOENY") != 0) {
         program.set("decal_kinds", 7);
         kinds_.bind(7);
         program.set("style_records", 10);
@@ -303,6 +343,10 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
         program.set("lens_texture", 8);
         gbuffer.lens->bind(8);
         program.set("lens_styles", static_cast<int>(prepared_->styles.size()));
+    }
+    if (flags.count("LENS_LISTS") != 0) {
+        program.set("lens_texels", 12);
+        lens_texels_.bind(12);
     }
     set_grid(prepared_->grid, program);
     if (flags.count("LEVELS") != 0) {

@@ -3,10 +3,10 @@
 
 #include "decalgl/technique/technique.h"
 #include "gl/buffer.h"
+#include "gl/growing_buffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "technique/static_decals/growing_buffer.h"
 #include "technique/static_decals/levels.h"
 #include "technique/static_decals/prepared_decals.h"
 
@@ -35,6 +35,8 @@ private:
 
     bool needs_levels(const View& view) const;
     void upload_styles(const PreparedDecals* prepared, const PreparedDecals* lens);
+    void upload_records(const PreparedDecals& prepared, const PreparedDecals* lens);
+    bool has_styles() const;
     // What is seen outside the lens, and inside.
     template <typename HoldsFor>
     bool any_look(HoldsFor holds_for) const {
@@ -52,10 +54,11 @@ private:
     std::shared_ptr<const PreparedDecals> lens_;  // null without one
     MemoryAccount memory_;
     gl::TextureBuffer buckets_;
-    GrowingBuffer cells_;
-    GrowingBuffer texels_;
+    gl::GrowingBuffer cells_;
+    gl::GrowingBuffer texels_;
+    gl::GrowingBuffer lens_texels_;            // where another draw order holds inside the lens
     gl::TextureBuffer styles_;                 // those inside the lens follow the others
-    gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain
+    gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain; those inside the lens too
     gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
     Levels levels_, lens_levels_;
     LevelPainter level_painter_, lens_painter_;

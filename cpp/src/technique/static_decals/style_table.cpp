@@ -172,16 +172,19 @@ DecalShape StyleTable::shape_of(const Decal& slot) const {
     return shape;
 }
 
-uint32_t StyleTable::kind_of(const Decal& slot, const DecalShape& shape) const {
+uint32_t StyleTable::record_of(const Decal& slot) const {
     const DecalView seen = view(slot);
     const LayerRecords& records = layers_[slot.feature.layer - input_->first_layer];
-    uint32_t first = 0;
     if (slot.role == DecalRole::fill)
-        first = records.hatches[seen.layer->fill.hatch(seen.feature())];
-    else if (slot.is_stroke())
-        first = (slot.role == DecalRole::casing ? records.casings
-                                                : records.strokes)[seen.stroke().style(seen.feature())];
-    return first << SCALE_BITS | static_cast<uint32_t>(shape.scale);
+        return records.hatches[seen.layer->fill.hatch(seen.feature())];
+    if (!slot.is_stroke())
+        return 0;
+    return (slot.role == DecalRole::casing ? records.casings
+                                           : records.strokes)[seen.stroke().style(seen.feature())];
+}
+
+uint32_t StyleTable::kind_of(const Decal& slot, const DecalShape& shape) const {
+    return record_of(slot) << SCALE_BITS | static_cast<uint32_t>(shape.scale);
 }
 
 std::vector<Decal> slots_of(const TechniqueInput& input) {

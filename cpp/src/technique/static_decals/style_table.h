@@ -51,6 +51,8 @@ public:
     StyleTable(const TechniqueInput& input, const BucketGrid& grid);
 
     DecalShape shape_of(const Decal& slot) const;
+    // The first texel of the slot's record; 0 for a plain stroke or an even fill.
+    uint32_t record_of(const Decal& slot) const;
     // The slot's entry in decal_kinds.
     uint32_t kind_of(const Decal& slot, const DecalShape& shape) const;
     DecalView view(const Decal& slot) const {

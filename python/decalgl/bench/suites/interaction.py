@@ -31,6 +31,8 @@ MOST_FEATURES = 1_000_000
 EDITED = 100
 COLORS = ("crimson", "teal")
 VIEW = "overview"
+MODES = {"grid": ("none", "coverage"), "bvh": ("none",)}
+TECHNIQUES = {"grid": "static", "bvh": "bvh"}
 
 
 def measure(work: Workload, records: Records) -> None:
@@ -38,15 +40,18 @@ def measure(work: Workload, records: Records) -> None:
     work.say(f"{len(table):,} features")
     scene = dg.Scene(work.ground)
     layer = add_lines(scene, table)
-    renderer = work.renderer(scene)
-    for antialias in ("none", "coverage"):
-        draw(renderer, work.views[VIEW], antialias)
-        times = interleaved(work.runs, *_changes(renderer, layer, work, antialias))
-        frame = times["frame_ms"]
-        record = records.at(f"{len(table):,} short lines, {antialias}", VIEW)
-        record.update(times)
-        for name in ("restyle", "filter", "edit", "lens", "reorder", "restyled"):
-            record[name] = times[f"{name}_ms"] / frame
+    for index, modes in MODES.items():
+        renderer = work.renderer(scene, index)
+        for antialias in modes:
+            draw(renderer, work.views[VIEW], antialias)
+            times = interleaved(work.runs, *_changes(renderer, layer, work, antialias))
+            frame = times["frame_ms"]
+            name = "" if index == "grid" else f', index="{index}"'
+            record = records.at(f"{len(table):,} short lines, {antialias}{name}", VIEW, TECHNIQUES[index])
+            record.update(times)
+            for change in ("restyle", "filter", "edit", "lens", "reorder", "restyled"):
+                record[change] = times[f"{change}_ms"] / frame
+        del renderer
 
 
 def _changes(renderer: dg.Renderer, layer: dg.Layer, work: Workload, antialias: str) -> list[Measure]:

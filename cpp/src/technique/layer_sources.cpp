@@ -1,4 +1,4 @@
-#include "technique/static_decals/layer_sources.h"
+#include "technique/layer_sources.h"
 
 #include <utility>
 
@@ -106,10 +106,17 @@ private:
     std::vector<int64_t> feature_offsets_{0};
 };
 
+// Places are those in the scene: what other techniques draw below is left empty.
+std::vector<Layer> layers_from_first(const TechniqueInput& input) {
+    std::vector<Layer> layers(input.first_layer);
+    layers.insert(layers.end(), input.layers.begin(), input.layers.end());
+    return layers;
+}
+
 }  // namespace
 
 LayerSources::LayerSources(const TechniqueInput& input)
-    : base_(std::make_shared<const std::vector<Layer>>(input.layers.begin(), input.layers.end())),
+    : base_(std::make_shared<const std::vector<Layer>>(layers_from_first(input))),
       input_(*base_),
       patched_(base_->size()),
       removed_(base_->size()) {
@@ -118,8 +125,16 @@ LayerSources::LayerSources(const TechniqueInput& input)
 }
 
 LayerSources::Place LayerSources::find(size_t layer, uint32_t feature) const {
+    if (patched_[layer].empty())
+        return {&input_[layer], feature};
     const auto patched = patched_[layer].find(feature);
     return patched == patched_[layer].end() ? Place{&input_[layer], feature} : patched->second;
+}
+
+const StrokeStyle& LayerSources::style_of(const Decal& decal) const {
+    const Place place = find(decal.feature.layer, decal.feature.feature);
+    const Stroke& stroke = decal.role == DecalRole::casing ? place.layer->casing : place.layer->stroke;
+    return stroke.styles[stroke.style(place.feature)];
 }
 
 Layer LayerSources::make_patch(const LayerEdit& edit) const {

@@ -18,6 +18,9 @@ class LayerSources {
 public:
     explicit LayerSources(const TechniqueInput& input);
 
+    const std::string& name_of(size_t layer) const { return input_[layer].name; }
+    // Of a stroke or casing, as it was prepared.
+    const StrokeStyle& style_of(const Decal& decal) const;
     size_t layer_count() const { return input_.size(); }
     size_t feature_count(size_t layer) const { return counts_[layer]; }
     bool is_removed(size_t layer, uint32_t feature) const { return removed_[layer].count(feature) != 0; }

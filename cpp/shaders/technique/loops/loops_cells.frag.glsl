@@ -1,0 +1,53 @@
+// LOOPS: features simplified by the view, looked up in cells that were made for it.
+//
+//     pixel ─▶ map position ─▶ cell ─▶ edges that are active: parity, or distance
+//
+// FILLS, STROKES     what there is
+// SAMPLES            the mean of 32 points of the pixel's area, else its centre
+// TRANSLUCENT        some feature is: with SAMPLES, each walks by itself
+// TESTED, ACTIVE     how many edges were looked at, as colours: all of them are active
+// IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
+#include "shared/ray.glsl"
+#include "technique/loops/cells.glsl"
+
+uniform usampler2D position_texture;
+#ifdef SAMPLES
+#include "technique/loops/cell_samples.glsl"
+uniform sampler2D surface_texture;
+#endif
+#if defined(TESTED) || defined(ACTIVE)
+#include "technique/loops/heat.glsl"
+#endif
+
+#ifdef IDS
+layout(location = 0) out uint id;
+#else
+layout(location = 0) out vec4 color;
+#endif
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    Position position = unpack_position(texelFetch(position_texture, pixel, 0));
+    if (is_sky(position)) discard;
+#ifdef SAMPLES
+    vec4 surface = texelFetch(surface_texture, pixel, 0);
+    mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
+#ifdef TRANSLUCENT
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < sample_count; ++i) sum += walk(lattice_point(position, foot * sample_offsets[i])).sum;
+    color = sum / float(sample_count);
+#else
+    color = mean_of_samples(position, foot * quanta_per_metre);
+#endif
+#else
+    Found found = walk(lattice_point(position, vec2(0.0)));
+#if defined(IDS)
+    if (found.seen == no_slot) discard;
+    id = found.seen + 1u;
+#elif defined(TESTED) || defined(ACTIVE)
+    color = heat(found.edges);
+#else
+    color = found.sum;
+#endif
+#endif
+}
