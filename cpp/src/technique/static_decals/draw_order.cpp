@@ -1,6 +1,7 @@
 #include "technique/static_decals/draw_order.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
