@@ -248,7 +248,7 @@ void Loops::set_detail(gl::Program& program, const View& view) const {
     }
     if (detail.screen < 0.0 && detail.steps.empty())
         return;
-    const DetailEye eye = detail.has_eye ? detail.eye : eye_of(view);
+    const DetailEye eye = detail.has_eye ? detail.eye : detail_eye_of(view);
     const glm::dvec2 place((eye.eye[0] - lattice.left) / lattice.quantum,
                            (eye.eye[1] - lattice.bottom) / lattice.quantum);
     const glm::dvec2 nearest = glm::clamp(glm::round(place), -1.0 * (1 << 30), 1.0 * (1 << 30));

@@ -1,7 +1,6 @@
 #include "technique/static_decals/draw_order.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
