@@ -48,7 +48,7 @@ techniques: build  ## Draw one scene by each technique, with error and time
 test: build  ## Run the C++ and Python tests
 	cmake --build $(BUILD)
 	ctest --test-dir $(BUILD) --output-on-failure --no-tests=error
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadfile
 
 bench: build  ## Measure speed and memory on real data
 	$(BIN)/decalgl bench

@@ -177,6 +177,14 @@ def test_pick_finds_what_is_seen() -> None:
     assert [(pick[0].row if pick else -1) for pick in found] == [int(frame.ids[y, x]) for x, y in places]
 
 
+def test_nothing_is_picked_in_the_sky() -> None:
+    scene = hilly_scene()
+    scene.add_lines(ZIGZAG, width=6)
+    frame = draw(scene, dg.Camera.look_at((50.0, -60.0, 30.0), (50.0, 50.0, 60.0)), SMALL)
+    assert np.isinf(frame.depth[0, 0])
+    assert frame.pick(0, 0) == []
+
+
 def test_a_view_moved_by_whole_pixels_is_the_picture_moved() -> None:
     scene = on_black(flat_scene())
     scene.add_lines([BENDS], width=2.5, color="#ff0000", corner="bevel")

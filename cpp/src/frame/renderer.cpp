@@ -1,6 +1,7 @@
 #include "decalgl/frame/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <utility>
 
@@ -323,6 +324,8 @@ std::vector<PickedFeature> Frame::pick(int x, int y) const {
     const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width()) + static_cast<size_t>(x);
     const std::vector<double>& positions = world();
     std::vector<PickedFeature> picked;
+    if (std::isnan(positions[3 * pixel]))
+        return picked;  // sky
     const PreparedScene& scene = *state_->scene;
     SeenPoint point = seen_point(state_->request.camera, height(),
                                  {positions[3 * pixel], positions[3 * pixel + 1], positions[3 * pixel + 2]},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -94,6 +95,8 @@ Heightfield Heightfield::exaggerated(double factor) const {
 }
 
 double Heightfield::height_at(double x, double y) const {
+    if (std::isnan(x) || std::isnan(y))
+        return std::numeric_limits<double>::quiet_NaN();
     const double column = std::clamp((x - x0_) / dx_, 0.0, columns_ - 1.0);
     const double row = std::clamp((y0_ - y) / dy_, 0.0, rows_ - 1.0);
     const auto left = std::min(static_cast<int32_t>(column), columns_ - 2);

@@ -40,7 +40,7 @@ public:
         return heights_[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
                         static_cast<size_t>(column)];
     }
-    // Of the surface at a place, which goes on level beyond the outer samples; NaN in holes.
+    // Of the surface at a place, which goes on level beyond the outer samples; NaN in holes and where the place is no number.
     double height_at(double x, double y) const;
     Bounds bounds() const;
     // Of the samples there are; above each other where there is none.

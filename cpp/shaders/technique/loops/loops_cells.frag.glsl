@@ -7,6 +7,10 @@
 // TRANSLUCENT        some feature is: with SAMPLES, each walks by itself
 // TESTED, ACTIVE     how many edges were looked at, as colours: all of them are active
 // IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
+// Flags that mean nothing beside others.
+#ifdef IDS
+#undef SAMPLES
+#endif
 #include "shared/ray.glsl"
 #include "technique/loops/cells.glsl"
 

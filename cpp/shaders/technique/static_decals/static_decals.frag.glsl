@@ -11,10 +11,13 @@
 // STYLES         some decal is more than a plain stroke or an even fill: of what it can be, JOINED, PATTERNS, BANDS,
 //                HATCHES, SLOPES
 // HIDDEN         some feature is not shown, and no colour is translucent
-// LENS_LISTS     inside the lens, features lie in another order
-// LENS_KINDS     and have other styles
-// LENS           some pixels are seen through the lens, where features look otherwise
+// LENS           some pixels are seen through the lens, where features look otherwise; there, LENS_LISTS: they lie in
+//                another order, LENS_KINDS: they have other styles
 // IDS            writes 1 + slot of the topmost feature at the centre instead of a colour
+#ifndef LENS
+#undef LENS_LISTS
+#undef LENS_KINDS
+#endif
 #if !defined(STYLES) && (defined(THOENY) || defined(JOINED) || defined(PATTERNS) || defined(BANDS) || defined(HATCHES) || defined(SLOPES))
 #define STYLES
 #endif
