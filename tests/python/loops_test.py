@@ -107,14 +107,16 @@ def test_ids_differ_only_within_the_bound_of_an_edge(name: str, pixels: float) -
 
 @pytest.mark.parametrize("name", ["hills", "line_widths"])
 def test_coverage_is_the_mean_of_its_samples(name: str) -> None:
-    view = by_loops(scenes.build(name), FULL)
+    # On level ground, as silhouettes and creases are filtered by the frame.
+    hilly = scenes.build(name)
+    level = dg.Scene(dg.Terrain.flat(hilly.scene.terrain.bounds), relief=hilly.scene.relief)
+    level._layers.extend(hilly.scene.layers)
+    view = by_loops(hilly._replace(scene=level), FULL)
     frame = judge.draw(renderer(), view)
     x0, y0, x1, y1 = crop = judge.busiest_crop(frame, (120, 68))
     expected = rounding.coverage_of_samples(view, frame, crop)
     own = judge.overlay_of(renderer(), view, "coverage")[y0:y1, x0:x1]
-    # Silhouettes are filtered by the frame.
-    whole = np.isfinite(frame.depth[y0:y1, x0:x1])
-    difference = np.abs(own - expected).max(axis=-1)[whole]
+    difference = np.abs(own - expected).max(axis=-1)
     assert (difference > 2.1 / 32).mean() <= 0.01
     assert (difference > 2.1 / 255).mean() <= 0.02
 
