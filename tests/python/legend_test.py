@@ -99,7 +99,6 @@ def face(handle: Any) -> list[int]:
         {"column": "gap"},
         {"column": "kind", "alpha": 0.5},
     ],
-    ids=str,
 )
 @pytest.mark.parametrize("kind", ["polygons", "lines"])
 def test_entries_are_those_of_geopandas(style: Any, kind: str, axes: Any) -> None:
@@ -134,7 +133,6 @@ def test_entries_are_those_of_geopandas(style: Any, kind: str, axes: Any) -> Non
         {"norm": BoundaryNorm([0, 10, 100], 256)},
         {"legend_kwds": {"orientation": "horizontal", "label": "height"}},
     ],
-    ids=str,
 )
 def test_colorbars_are_those_of_geopandas(style: Any, axes: Any) -> None:
     data = parks(height=[1.0, 10.0, NAN, 100.0])

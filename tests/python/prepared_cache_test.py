@@ -75,7 +75,7 @@ CHANGES = [
 ]
 
 
-@pytest.mark.parametrize("change", CHANGES, ids=str)
+@pytest.mark.parametrize("change", CHANGES)
 def test_any_change_makes_a_cache_anew(saved: Path, tmp_path: Path, change: dict[str, Any]) -> None:
     path = tmp_path / "map.decal"
     path.write_bytes(saved.read_bytes())
