@@ -64,6 +64,11 @@ def blur(view: View, x: float, y: float, heading: float, reach: float, **options
     return 4.0 * float(means.sum() * (bins[1] - bins[0]))
 
 
+# Nearer than the lattice, which warns: blur by whole texels is what is looked at.
+NEARER_THAN_VERTICES = pytest.mark.filterwarnings("ignore:In the middle of this picture:decalgl.DecalWarning")
+
+
+@NEARER_THAN_VERTICES
 def test_near_the_eye_borders_are_as_wide_as_filtered_texels() -> None:
     terrain = flat_terrain(20_000.0)
     texel = texel_of(terrain)
@@ -98,6 +103,7 @@ def ramp_terrain(slope: float, half: float) -> dg.Terrain:
     return dg.Terrain((slope * (y + np.zeros((3, 3)))).astype(np.float32), -half, half, half, half)
 
 
+@NEARER_THAN_VERTICES
 @pytest.mark.parametrize("slope", [0.0, 1.0, 5.0])
 def test_on_slopes_texels_are_stretched(slope: float) -> None:
     """Seen head-on, a border along the slope's contour is blurred over as many metres of the map at any slope, so over

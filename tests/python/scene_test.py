@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import geopandas
@@ -227,7 +228,6 @@ def test_bad_layers_name_what_is_wrong(data: Any, options: Any, error: type[Exce
     ("options", "error", "message"),
     [
         ({"technique": "static"}, dg.UnsupportedError, "'roads'.*on the screen.*default.*width_units='m'"),
-        ({"width": 2, "dash": "dashed"}, dg.UnsupportedError, "'roads': dash=.*default.*width_units='m'"),
         ({"width": 2, "width_units": "ft"}, dg.StyleError, "'roads'.*'m' or 'px'"),
         ({"width": 0, "width_units": "m"}, dg.StyleError, "'roads', row 0: width 0 is not a positive"),
         ({"width": -3, "width_units": "m"}, dg.StyleError, "'roads', row 0: width -3 "),
@@ -375,6 +375,8 @@ def test_lines_of_any_width_up_to_the_limit_are_drawn() -> None:
     for width in (1e-9, 1e-3, 1e3, 1e6):
         scene = flat_scene()
         scene.add_lines([DIAGONAL], width=width, width_units="m", color="red")
-        picture = scene.render(MAP, (64, 64), antialias="none")
+        # A lattice that reaches so far is coarser than pixels.
+        with pytest.warns(dg.DecalWarning, match="pixels off") if width == 1e6 else nullcontext():
+            picture = scene.render(MAP, (64, 64), antialias="none")
         covered = int((picture.ids == 0).sum())
         assert covered == (64 * 64 if width >= 1e3 else 64)

@@ -204,12 +204,19 @@ void Pipeline::show_mean(int samples) {
     draw_full_screen();
 }
 
+bool Pipeline::samples_creases() {
+    bool samples = shows_layers();
+    for_each_shown(
+        [&](size_t, const Technique& technique) { samples = samples && !technique.filters_creases(); });
+    return samples;
+}
+
 void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image) {
     std::vector<uint32_t> pixels;
     {
         const gl::PassTimer timer(&timings_, "silhouettes");
         pixels =
-            silhouettes_->find(targets_->seen.gbuffer, shows_layers() ? &targets_->seen.overlay : nullptr,
+            silhouettes_->find(targets_->seen.gbuffer, samples_creases() ? &targets_->seen.overlay : nullptr,
                                piece.drawn, piece.shown, programs_);
     }
     silhouette_pixels_ += pixels.size();

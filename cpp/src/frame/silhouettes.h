@@ -26,7 +26,7 @@ public:
     Silhouettes(int width, int height, bool has_overlay, const MemoryAccount& memory);
 
     // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
-    // that of the pixels' centres. overlay: none where no layer is shown.
+    // that of the pixels' centres. overlay: none where creases are left alone.
     std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, const Rectangle& drawn,
                                const Rectangle& shown, gl::ProgramLibrary& programs);
 

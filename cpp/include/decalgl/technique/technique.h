@@ -205,6 +205,9 @@ public:
     virtual bool needs_depth(const View&) const { return false; }
     // Whether `draw` and `draw_ids` need a depth attachment with a stencil.
     virtual bool needs_stencil(const View&) const { return false; }
+    // Whether what `draw` makes with coverage holds where the ground bends within a pixel. Else the frame draws the
+    // centres of samples there.
+    virtual bool filters_creases() const { return false; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture: all of it,
     // or over what view.has_below says is there.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;
