@@ -16,6 +16,7 @@ from decalgl.bench import command, comparison, goals, shapes, tables, terminal, 
 from decalgl.bench.measure import interleaved
 from decalgl.bench.suites import SUITES
 from decalgl.errors import InputError
+from decalgl.report import papers
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,6 +71,13 @@ def test_the_documentation_can_be_made_of_them(records: list[dict[str, Any]]) ->
     results = {"machine": {"cores": 2, "processor": "x", "driver": "y"}, "runs": 1, "records": records}
     for block in tables.BLOCKS.values():
         assert block(results).startswith("| ")
+
+
+def test_the_report_has_the_papers_tables_of_them(records: list[dict[str, Any]]) -> None:
+    titles = {figure.title for figure in papers.figures(records)}
+    tables_of = {"Thöny 2018, table 2", "LOOPS, table 2", "LOOPS, figure 16", "Trapp 2015, table 2"}
+    assert titles >= tables_of
+    assert sum(title.startswith("Taibo 2014, figure") for title in titles) == 3
 
 
 def test_shapes_are_valid() -> None:

@@ -148,7 +148,7 @@ def _taibo(rows: Sequence[Row]) -> list[Figure]:
     made = {
         "Taibo 2014, figure 10: memory": ("prepared_bytes", "What tiles are drawn from"),
         "Taibo 2014, figure 11: generation": ("generate_ms", "Preparing"),
-        "Taibo 2014, figure 12: rendering": ("rebuild_ms", "Drawing all tiles of a view anew"),
+        "Taibo 2014, figure 12: rendering": ("tiles_ms", "Drawing all tiles of a view anew"),
     }
     found = []
     for title, (column, words) in made.items():
