@@ -116,8 +116,8 @@ LOOPS_DRAWN = {
 LOOPS_INDEXES = {
     "index": "`{by}`",
     "references": "{loops_references:,.0f}",
-    "memory ÷ constant": "{loops_constant_bytes:.2f}",
-    "time ÷ constant": "{loops_constant_time:.2f}",
+    "memory ÷ fitted": "{loops_fitted_bytes:.2f}",
+    "time ÷ fitted": "{loops_fitted_time:.2f}",
 }
 LOOPS_DETAIL = {
     **WHERE,
@@ -267,7 +267,7 @@ def loops(results: Results) -> str:
     named = [{**one, "by": one["technique"].removeprefix("loops ")} for one in found]
     tables = (
         ("loops_seg_time", LOOPS_DRAWN),
-        ("loops_constant_time", LOOPS_INDEXES),
+        ("loops_fitted_time", LOOPS_INDEXES),
         ("loops_detail", LOOPS_DETAIL),
         ("loops_P", LOOPS_PREPARED),
     )

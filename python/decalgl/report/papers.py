@@ -127,7 +127,7 @@ def _loops_table(rows: Sequence[Row]) -> Figure | None:
 
 
 def _loops_flight(rows: Sequence[Row]) -> Figure | None:
-    own = [row for row in rows if row["technique"].startswith("loops ") and "loops_constant_time" in row]
+    own = [row for row in rows if row["technique"].startswith("loops ") and "loops_fitted_time" in row]
     if not own:
         return None
     points = [

@@ -13,7 +13,7 @@ ring         ring: what does one enormous ring cost?
 interaction  restyle, filter, edit, lens, reorder: what do changes of a prepared map cost?
 dynamic      D, update_share: what do lines of constant width on the screen cost, by tiles and by lists?
 distance_field   sets, drawn, field_memory: what do networks by distance fields cost?
-loops        loops_detail, loops_static, loops_seg_time, loops_constant_time ...: what do levels of detail save?
+loops        loops_detail, loops_static, loops_seg_time, loops_fitted_time ...: what do levels of detail save?
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 clipmap      memory, generate, width, tiles, picture: what do the solutions for lines in textures cost?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
