@@ -105,6 +105,7 @@ def panel(entry: Entry) -> tuple[Image.Image, float, float]:
     renderer.preprocess(_scene(entry))
     times = []
     for _ in range(RUNS):
+        renderer.forget()
         renderer.update(_camera())
         frame = renderer.render()
         passes = frame.stats.passes
