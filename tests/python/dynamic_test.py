@@ -119,15 +119,22 @@ def test_coverage_over_facets_of_a_few_pixels() -> None:
     assert judged(on_black(hilly_scene()), STYLES[0]).rms <= 0.035
 
 
-@pytest.mark.parametrize("style", STYLES, ids=lambda style: "-".join(style))
+def known_to_fail(style: dict[str, Any]) -> Any:
+    """With bands under square caps, tiles draw one pixel in which the reference and `pick` find no ground of a line."""
+    fails = style.keys() >= {"bands", "alpha", "cap"}
+    return pytest.param(style, marks=pytest.mark.xfail(strict=True)) if fails else style
+
+
+@pytest.mark.parametrize(
+    "style", [known_to_fail(style) for style in STYLES], ids=lambda style: "-".join(style)
+)
 def test_ids_are_those_of_the_reference(style: dict[str, Any]) -> None:
     scene = hilly_scene()
     scene.add_lines(ZIGZAG, **{"color": "red", **style})
     frame = scene.render(OBLIQUE, SMALL, "none", terrain_error=0.0)
     expected = ref.render_ids(scene, OBLIQUE, SMALL, distances=False)
     found = ref.compare_ids(frame.ids, frame.layers, expected.ids, expected.layers)
-    # Whether the ground under a line is seen has a sharp bound, which float32 may meet elsewhere.
-    assert found.wrong <= 1
+    assert found.wrong == 0
 
 
 @pytest.mark.parametrize("corner", ["round", "miter", "bevel"])
