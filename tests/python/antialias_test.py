@@ -133,7 +133,7 @@ def test_passes_and_variants_of_each_mode() -> None:
         passes[mode] = Counter(one["name"] for one in stats.passes)
     always = {"terrain", "static_decals", "compose"}
     assert programs["none"] == always
-    assert programs["coverage"] == always | {"silhouettes", "gathered", "spread", "mean_gathered"}
+    assert programs["coverage"] == always | {"silhouettes", "gathered", "facets", "spread", "mean_gathered"}
     assert programs["ssaa"] == always | {"mean"}
     assert programs["msaa"] == always | {"mean", "one_sample"}
     assert programs["fxaa"] == always | {"fxaa"}

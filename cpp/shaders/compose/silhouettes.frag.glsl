@@ -2,7 +2,8 @@
 //
 // Where one surface fills a pixel and its neighbours, the plane of its triangle says where the neighbours' rays meet
 // the ground. A pixel is marked where that is too far from where they do, counted in the pixel's own footprints, or
-// where one of them sees the sky.
+// where one of them sees the sky. At a border of a feature less is enough, and least where facets are about as small as
+// pixels: what is seen beside may be near the plane by chance.
 //
 //         \ |  |          plane of p says: q's ray meets the ground here   x
 //          \p  q          but it does there                                    o
@@ -17,6 +18,9 @@ uniform ivec2 drawn_size;
 // In footprints.
 const float farthest = 1.0;
 const float farthest_at_borders = 0.15;
+// The longer side of a pixel, in cells of the terrain, from which on facets are small.
+const float smallest_facets = 0.75;
+const float farthest_among_small = 0.05;
 
 const ivec2 neighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -42,6 +46,17 @@ bool is_at_border(ivec2 pixel) {
     }
     return any(greaterThan(apart, vec4(0.01)));
 }
+
+uniform usampler2D tile_levels;  // of detail, as drawn
+
+// Metres that the triangles at a pixel are long on the map.
+float cell_at(vec2 place, float distance) {
+    vec2 relative = (ray_origin_at(place) + distance * ray_direction_at(place)).xy;
+    ivec2 first = base_sample.xy + ivec2(floor(vec2(relative.x, -relative.y) / spacing.xy + base_sample_fraction.xy));
+    first = clamp(first, ivec2(0), samples.xy - 1);
+    const int tile_quads = 64;
+    return max(spacing.x, spacing.y) * float(1 << texelFetch(tile_levels, first / tile_quads, 0).r);
+}
 #endif
 
 void main() {
@@ -52,7 +67,12 @@ void main() {
     mat2 footprints_of_map = sky ? mat2(0.0) : inverse(footprint(place, surface.xy, surface.z));
     float most = farthest;
 #ifdef OVERLAY
-    if (is_at_border(pixel)) most = farthest_at_borders;
+    bool at_border = is_at_border(pixel);
+    if (at_border) most = farthest_at_borders;
+    float distance = sky ? 0.0 : surface.z;
+    mat2 foot = footprint(place, surface.xy, distance);
+    bool is_small = max(length(foot[0]), length(foot[1])) > smallest_facets * cell_at(place, distance);
+    if (at_border && is_small) most = farthest_among_small;
 #endif
     bool marked = false;
     for (int i = 0; i < 4; ++i) {

@@ -1,4 +1,4 @@
-// What sixteen rays of each gathered pixel meet.
+// What sixteen rays of each gathered pixel meet; or each of its 64 samples, where it sees many facets (facets.frag.glsl).
 //
 // What a sample sees lies near what the pixel or a neighbour sees at its centre. So its ray is followed for a few cells
 // around the nearest of those places, then around the nearest of those that lie behind, and so on. Where it meets
@@ -6,15 +6,25 @@
 // is seen at so flat an angle that a pixel spans many cells, the planes stand for it.
 //
 // RAMP   colours by height
+// RAYS   sixteen rays
 #define GATHERED 1
-#define RAYS 1
 #include "terrain/march.glsl"
+
+#ifndef RAYS
+layout(early_fragment_tests) in;
+#endif
 
 uniform sampler2D surface_texture;  // at the pixels' centres
 uniform ivec2 drawn_size;
 uniform float no_distance;  // infinity
 
 const int most_looks = 4;
+// In cells, how far before a place that is seen a ray is followed: among facets smaller than a pixel, others may hide it.
+#ifdef RAYS
+const float cells_before = 1.0;
+#else
+const float cells_before = 4.0;
+#endif
 
 // What is seen at the centre of a pixel or a neighbour.
 struct Centre {
@@ -79,7 +89,7 @@ Sight look(vec2 pixel, Centre centre) {
     float cell = max(spacing.x, spacing.y) / length(direction.xy);
     float reach = 1.5 * reach_of(pixel, surface);
     float on_plane = clamp(distance_to_plane(pixel, centre), surface.z - reach, surface.z + reach);
-    float from = max(min(surface.z, on_plane) - 0.25 * reach - cell, base_offset.w);
+    float from = max(min(surface.z, on_plane) - 0.25 * reach - cells_before * cell, base_offset.w);
     float until = max(surface.z, on_plane) + 0.25 * reach + cell;
     bool from_below = dot(vec3(-surface.xy, 1.0), direction) > 0.0;
     Triangle met;

@@ -6,12 +6,15 @@
 //          +---+              +-+-+
 //                             |s|s|
 //                             +-+-+
+//
+// Depth is 1 where samples need rays of their own.
 #define GATHERED 1
 #include "terrain/surface.glsl"
 
 uniform usampler2D ray_position_texture;
 uniform sampler2D ray_surface_texture;
 uniform sampler2D ray_base_texture;
+uniform sampler2D facets_texture;  // a texel a pixel
 uniform vec2 ray_offsets[16];  // as gathered_offsets, of the rays
 
 // By more than what float32 rounds.
@@ -24,6 +27,7 @@ bool is_over_terrain(vec2 relative) {
 
 void main() {
     ivec2 ray = ivec2(gl_FragCoord.xy) / 2;
+    gl_FragDepth = texelFetch(facets_texture, ray / 4, 0).r;
     vec4 surface = texelFetch(ray_surface_texture, ray, 0);
     out_base = texelFetch(ray_base_texture, ray, 0);
     out_position = texelFetch(ray_position_texture, ray, 0);

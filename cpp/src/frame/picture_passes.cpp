@@ -217,7 +217,7 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
         const gl::PassTimer timer(&timings_, "silhouettes");
         pixels =
             silhouettes_->find(targets_->seen.gbuffer, samples_creases() ? &targets_->seen.overlay : nullptr,
-                               piece.drawn, piece.shown, programs_);
+                               piece.drawn, piece.shown, terrain_->levels(), programs_);
     }
     silhouette_pixels_ += pixels.size();
     for (size_t first = 0; first < pixels.size(); first += Silhouettes::batch_size) {
@@ -235,30 +235,57 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
     }
 }
 
-void Pipeline::follow_rays(const Piece& piece) {
-    const gl::PassTimer timer(&timings_, "gathered");
-    const LowerRows used(silhouettes_->ray_columns(), silhouettes_->ray_rows());
-    gl::Program& program = programs_.get("gathered", terrain_->ray_flags());
-    silhouettes_->rays().framebuffer.bind();
+void Pipeline::follow_rays(const Piece& piece, const gl::Flags& flags) {
+    gl::Flags all = terrain_->ray_flags();
+    all.insert(flags.begin(), flags.end());
+    gl::Program& program = programs_.get("gathered", all);
     program.use();
     terrain_->set_for_rays(program);
-    silhouettes_->set_rays(program);
     program.set("surface_texture", 4);
     targets_->seen.gbuffer.surface.bind(4);
     program.set("drawn_size", glm::ivec2(piece.drawn.width, piece.drawn.height));
     program.set("no_distance", std::numeric_limits<float>::infinity());
+    if (flags.count("RAYS") != 0)
+        silhouettes_->set_rays(program);
+    else
+        silhouettes_->set_gathered(program);
     draw_full_screen();
+}
+
+// Sixteen rays of each pixel of the batch, and whether they are too few.
+void Pipeline::follow_few_rays(const Piece& piece) {
+    const gl::PassTimer timer(&timings_, "gathered");
+    const LowerRows used(silhouettes_->ray_columns(), silhouettes_->ray_rows());
+    silhouettes_->rays().framebuffer.bind();
+    follow_rays(piece, {"RAYS"});
+    silhouettes_->count_facets(programs_);
+}
+
+// A ray for each sample, into what was spread, where that is marked by its depth.
+void Pipeline::follow_all_rays(const Piece& piece) {
+    const gl::PassTimer timer(&timings_, "gathered");
+    silhouettes_->seen().gbuffer.framebuffer.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_EQUAL);
+    glDepthRange(1.0, 1.0);
+    follow_rays(piece, {});
+    glDepthRange(0.0, 1.0);
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
 }
 
 // The colours of some pixels, each the mean of its samples.
 std::vector<uint8_t> Pipeline::draw_gathered(const Piece& piece, Span<const uint32_t> pixels) {
     silhouettes_->gather(pixels);
-    follow_rays(piece);
+    follow_few_rays(piece);
     const LowerRows used(silhouettes_->sample_columns(), silhouettes_->sample_rows());
     {
         const gl::PassTimer timer(&timings_, "spread");
         silhouettes_->spread(programs_);
     }
+    follow_all_rays(piece);
     const SeenTargets& seen = silhouettes_->seen();
     draw_overlay(seen, Antialias::none);
     compose(seen, silhouettes_->composed(), {"SAMPLE", "GATHERED"});

@@ -112,7 +112,9 @@ private:
     void show_mean(int samples);
     void redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image);
     bool samples_creases();
-    void follow_rays(const Piece& piece);
+    void follow_rays(const Piece& piece, const gl::Flags& flags);
+    void follow_few_rays(const Piece& piece);
+    void follow_all_rays(const Piece& piece);
     std::vector<uint8_t> draw_gathered(const Piece& piece, Span<const uint32_t> pixels);
     void smooth_edges(const Piece& piece);
     void draw_full_screen();

@@ -59,6 +59,7 @@ Silhouettes::Silhouettes(int width, int height, bool has_overlay, const MemoryAc
 
 std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay,
                                         const Rectangle& drawn, const Rectangle& shown,
+                                        const gl::Texture2D& tile_levels,
                                         gl::ProgramLibrary& programs) {
     gl::Program& program =
         programs.get("silhouettes", overlay != nullptr ? gl::Flags{"OVERLAY"} : gl::Flags{});
@@ -69,6 +70,8 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
     if (overlay != nullptr) {
         program.set("overlay_texture", 1);
         overlay->bind(1);
+        program.set("tile_levels", 2);
+        tile_levels.bind(2);
     }
     program.set("drawn_size", glm::ivec2(drawn.width, drawn.height));
     no_vertices_.bind();
@@ -93,6 +96,8 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
 
 void Silhouettes::make_batch_targets() {
     rays_ = GBuffer(ray_side * columns, ray_side * rows, memory_);
+    facets_ = gl::Texture2D::create(memory_, "silhouettes: facets", GL_R8, columns, rows);
+    facets_framebuffer_ = gl::Framebuffer::create("facets", {{GL_COLOR_ATTACHMENT0, &facets_}});
     const int width = sample_side * columns, height = sample_side * rows;
     seen_ = std::make_unique<SeenTargets>(width, height, has_overlay_, OverlayDepth::none, memory_);
     composed_ = gl::Texture2D::create(memory_, "silhouettes: composed", GL_RGBA8, width, height);
@@ -145,6 +150,16 @@ void Silhouettes::set_gathered(gl::Program& program) const {
     set_offsets(program, "gathered_offsets", offsets);
 }
 
+void Silhouettes::count_facets(gl::ProgramLibrary& programs) const {
+    gl::Program& program = programs.get("facets");
+    facets_framebuffer_.bind();
+    program.use();
+    program.set("ray_surface_texture", 0);
+    rays_.surface.bind(0);
+    no_vertices_.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 void Silhouettes::spread(gl::ProgramLibrary& programs) {
     gl::Program& program = programs.get("spread");
     seen_->gbuffer.framebuffer.bind();
@@ -157,8 +172,14 @@ void Silhouettes::spread(gl::ProgramLibrary& programs) {
     rays_.surface.bind(1);
     program.set("ray_base_texture", 2);
     rays_.base.bind(2);
+    program.set("facets_texture", 3);
+    facets_.bind(3);
     no_vertices_.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_GREATER);
+    glDisable(GL_DEPTH_TEST);
 }
 
 std::vector<uint8_t> Silhouettes::means(gl::ProgramLibrary& programs) {

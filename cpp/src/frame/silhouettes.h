@@ -2,7 +2,8 @@
 // the mean of samples.
 //
 //     G-buffer, overlay ─▶ marks ─▶ list ─▶ 16 rays a pixel ─▶ G-buffer of 64 texels a pixel ─▶ overlay ─▶ compose ─▶ means
-//                                   CPU     terrain/gathered   terrain/spread
+//                                   CPU     terrain/gathered   terrain/spread; where the rays met many facets
+//                                                              (terrain/facets), a ray for each texel
 //
 // Such pixels are few, so what they see is gathered in textures of its own, batch after batch, and neither the
 // terrain's triangles nor the rest of the picture are touched again.
@@ -28,7 +29,8 @@ public:
     // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
     // that of the pixels' centres. overlay: none where creases are left alone.
     std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, const Rectangle& drawn,
-                               const Rectangle& shown, gl::ProgramLibrary& programs);
+                               const Rectangle& shown, const gl::Texture2D& tile_levels,
+                               gl::ProgramLibrary& programs);
 
     static constexpr size_t batch_size = 8192;
     // Makes a batch of pixels the ones that programs with the flag GATHERED see.
@@ -36,7 +38,9 @@ public:
     void set_gathered(gl::Program& program) const;
     // The same for the program that follows the batch's rays, into `rays()`.
     void set_rays(gl::Program& program) const;
-    // The samples on what the rays met, into `seen()`.
+    // Which pixels' rays met so many facets that each sample needs its own.
+    void count_facets(gl::ProgramLibrary& programs) const;
+    // The samples on what the rays met, into `seen()`, with depth 1 where they need rays of their own.
     void spread(gl::ProgramLibrary& programs);
     // The texels across, and the rows of them that the batch fills, of `rays()` and `seen()`.
     int ray_columns() const;
@@ -63,6 +67,8 @@ private:
     gl::TextureBuffer pixels_;
     size_t count_ = 0;
     GBuffer rays_;  // made when first needed, as what follows
+    gl::Texture2D facets_;
+    gl::Framebuffer facets_framebuffer_;
     std::unique_ptr<SeenTargets> seen_;
     gl::Texture2D composed_;
     gl::Framebuffer composed_framebuffer_;

@@ -26,6 +26,7 @@ public:
     // flags of the program, and its uniforms.
     void set_levels(const std::vector<VisibleTile>& tiles);
     const gl::Texture2D& heights() const { return heights_; }
+    const gl::Texture2D& levels() const { return levels_; }
     gl::Flags ray_flags() const;
     void set_for_rays(gl::Program& program) const;
 

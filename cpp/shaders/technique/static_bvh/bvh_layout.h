@@ -71,5 +71,7 @@
 
 // In a pixel that a border passes through (sample_place.glsl).
 #define BORDER_SAMPLES 64
+// Pixels of more cells are not searched all over for borders (find_borders.glsl).
+#define FAR_CELLS 2048
 
 #endif

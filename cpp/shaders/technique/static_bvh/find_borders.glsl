@@ -6,9 +6,12 @@
 #ifndef RINGS
 #include "technique/static_bvh/stroke_borders.glsl"
 #endif
+#ifdef FAR
+#include "technique/static_bvh/far_borders.glsl"
+#endif
 
-// A pixel of more cells is not searched, and taken to have some.
-const int most_cells = 2048;
+// A pixel of more cells is taken to have some, and searched only around a place where one passes.
+const int most_cells = FAR_CELLS;
 // Objects and cells that are looked at: until one is found, and at the least where a nearer one may follow. Of very many
 // borders none is worth a long search, as samples that follow any of them see the others as well.
 const int most_steps = 4096;
@@ -82,11 +85,12 @@ Borders find_borders(ivec2 point, mat2 foot) {
 #else
     bool cut_by_grid = any(lessThan(search.box.xy, grid_box.xy)) || any(greaterThan(search.box.zw, grid_box.zw));
 #endif
-    ivec2 cells = search.high - search.low + 1;
-    if (cells.x * cells.y > most_cells) {
-        add_unknown(borders);
-        return borders;
-    }
+    bool is_far = cells_in(search) > most_cells;
+#ifdef FAR
+    ivec2 place = place_at_border(point, foot, is_far);
+    if (is_far) search = search_around(place, ivec2(1));
+#endif
+    if (is_far) add_unknown(borders);
     uint first_signature = 0u;
     uint signature = 0u;
     bool is_first = true, ended = false;

@@ -38,6 +38,11 @@ Search search_around(ivec2 point, ivec2 half_size) {
     return search;
 }
 
+int cells_in(Search search) {
+    ivec2 cells = search.high - search.low + 1;
+    return cells.x * cells.y;
+}
+
 // Goes on by one node of the cell's tree. The object of a leaf that meets the pixel, else -1.
 int visit_node(inout Search search) {
     Tree tree = search.tree;

@@ -11,6 +11,7 @@
 // UNSORTED       segments lie along a Hilbert curve: the walk goes on to the end
 // NEAREST        the nearest line that covers the point is the only one seen
 // BORDERS        writes how the nearest border in the pixel runs, nothing where there is none; nearer ones are deeper
+// FAR            of BORDERS: some pixels may have very many cells
 // SAMPLES        the mean of some of the points of the pixel's area that follow that border, else its centre
 // THOENY         lines by how much of the pixel they cover
 // HIDDEN         some fills are not seen
@@ -84,12 +85,13 @@ uniform bool inside;
 #if defined(BORDERS) || defined(THOENY)
 #include "technique/static_bvh/search.glsl"
 #endif
+#if !defined(THOENY) && (!defined(BORDERS) || defined(FAR))
+#include "technique/static_bvh/walk.glsl"
+#endif
 #if defined(BORDERS)
 #include "technique/static_bvh/find_borders.glsl"
 #elif defined(THOENY)
 #include "technique/static_bvh/thoeny_walk.glsl"
-#else
-#include "technique/static_bvh/walk.glsl"
 #endif
 
 #ifdef IDS

@@ -12,6 +12,11 @@
 
 // Pixels larger than this many cells are sampled point by point.
 const float most_cells_across = 1.5;
+const int most_borders = 8;
+const float most_spread = 0.03;
+// Mesa's software rasteriser ends a shader's loops after 65,535 turns, and quarters take four times as many.
+const int most_words = 4096;
+const int most_texels = 8192;
 const float most_cells_looked_into = 4.0;  // where strokes are drawn by their estimated coverage
 
 // How the walk from the cell's corner meets a ring's edge (ring_cells.h): `above` is how far above the place where the
@@ -165,9 +170,16 @@ void add_group(inout Samples samples, inout uvec2 open, Group group, Cell cell, 
 }
 #endif
 
+// What a pixel takes.
+struct Effort {
+    int borders;
+    int words;
+};
+
 // Walks the list of a cell for the samples that lie in it. `local`: the pixel's centre in quanta from the cell's corner.
 // Most edges decide for all samples alike: the inner loop goes on to the next one that does not.
-vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside) {
+// `effort` counts borders, which are rounded one by one, and words.
+vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside, inout Effort effort) {
     Samples samples;
     samples.open = inside;
     samples.sum = vec4(0.0);
@@ -203,6 +215,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside) {
                 if (alike != for_each) group.covered = is_stroke(group) ? group.covered | uvec2(alike) : group.covered ^ uvec2(alike);
             }
             ++at;
+            ++effort.words;
             if (ends) {
 #ifdef STYLES
                 add_group(samples, open, group, cell, local, foot);
@@ -214,6 +227,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside) {
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
+            ++effort.borders;
 #ifdef PARTS
             if (is_stroke(group)) add_styled(group, group.before, group.from);
 #else
@@ -236,34 +250,100 @@ uvec2 samples_in_cell(vec2 centre, mat2 foot, float size) {
            ~samples_beyond(up, centre.y - size);
 }
 
-// Each sample by itself: where it lies in a cell that few others lie in.
-vec4 composite_points(LatticePosition centre, mat2 foot) {
-    vec4 sum = vec4(0.0);
-    int i = 0;
+// A place that many quanta from another.
+LatticePosition moved(LatticePosition from, vec2 by) {
+    vec2 at = from.fraction + by;
+    vec2 whole = floor(at);
+    return LatticePosition(from.quantum + ivec2(whole), at - whole);
+}
+
+vec2 middle_of_quarter(int index) {
+    return 0.5 * vec2(index & 1, index >> 1) - 0.25;
+}
+
+#if defined(POINTS) || defined(FROM_LEVELS)
+// Each sample by itself, where it lies in a cell that few others lie in: first those of the pixel, and where they are rough
+// those of its quarters in their place. They are rough where sixteen of them, which are as even a pattern as all, tell
+// something else than the others. `first`: the sample to begin with.
+vec4 composite_points(LatticePosition centre, mat2 foot, int first) {
+    const int all = 5 * sample_count;
+    vec4 sum = vec4(0.0), squares = vec4(0.0), sixteen = vec4(0.0);
+    int i = first, end = first < sample_count ? sample_count : all;
     do {
-        vec2 at = centre.fraction + foot * sample_offsets[i];
-        vec2 whole = floor(at);
-        sum += color_at(LatticePosition(centre.quantum + ivec2(whole), at - whole));
-    } while (++i < sample_count);
-    return sum / float(sample_count);
+        vec2 offset = sample_offsets[i & (sample_count - 1)];
+        if (i >= sample_count) offset = 0.5 * offset + middle_of_quarter(i / sample_count - 1);
+        sixteen += color_at(moved(centre, foot * offset));
+        ++i;
+        if ((i & 15) == 0) {
+            sum += sixteen;
+            squares += sixteen * sixteen;
+            sixteen = vec4(0.0);
+        }
+        vec4 spread = squares / 1024.0 - sum * sum / 4096.0;
+        bool is_rough = any(greaterThan(spread, vec4(most_spread * most_spread)));
+        if (i == sample_count && is_rough && walked_texels < most_texels) {
+            sum = vec4(0.0);
+            end = all;
+        }
+    } while (i < end);
+    return sum / float(end == all ? all - sample_count : sample_count);
 }
-
-Cell cell_of_sample(LatticePosition centre, mat2 foot, int index) {
-    return cell_at(centre.quantum + ivec2(floor(centre.fraction + foot * sample_offsets[index])));
-}
-
+#else
 // Cell by cell, each for all samples in it.
-vec4 composite_cells(LatticePosition centre, mat2 foot) {
+vec4 composite_samples(LatticePosition centre, mat2 foot, out bool is_rough) {
     vec4 sum = vec4(0.0);
     uvec2 left = all_samples;
+    Effort effort = Effort(0, 0);
     do {
         int next = first_of(left);
-        Cell cell = cell_of_sample(centre, foot, next);
+        Cell cell = cell_at(moved(centre, foot * sample_offsets[next]).quantum);
         vec2 local = vec2(centre.quantum - cell.corner) + centre.fraction;
         // The sample that the cell was looked up for is in it, whatever was rounded.
         uvec2 inside = left & (samples_in_cell(local, foot, float(1 << cell.bits)) | sample_if(true, next));
-        sum += composite_cell(cell, local, foot, inside);
+        sum += composite_cell(cell, local, foot, inside, effort);
         left &= ~inside;
     } while (!is_empty(left));
+    is_rough = effort.borders > most_borders && effort.words < most_words;
     return sum / float(sample_count);
 }
+
+// A pixel that is rough is seen once more, by as many samples in each of its quarters.
+vec4 composite_area(LatticePosition centre, mat2 foot) {
+    vec4 sum = vec4(0.0), color = vec4(0.0);
+    bool is_rough = false;
+    int part = 0;
+    do {
+        bool whole = part == 0;
+        bool rough;
+        color = composite_samples(whole ? centre : moved(centre, foot * middle_of_quarter(part - 1)), whole ? foot : 0.5 * foot, rough);
+        if (whole) is_rough = rough;
+        else sum += 0.25 * color;
+        ++part;
+    } while (is_rough && part <= 4);
+    return is_rough ? sum : color;
+}
+#endif
+
+#ifdef FROM_LEVELS
+// Where thin lines make a level rough, the next finer one tells more, and points where there is none.
+vec4 composite_levels(LatticePosition centre, mat2 foot) {
+    float level = level_of(foot);
+    bool is_rough;
+#ifdef LINES
+    vec4 color;
+    int looks = 0;
+    do {
+        float per_tap = looks == 0 ? texels_per_tap : texels_per_fine_tap;
+        color = mean_of_level(centre, foot, max(level - float(looks), 0.0), per_tap, is_rough);
+        ++looks;
+    } while (is_rough && looks == 1);
+    bool by_points = is_rough && level == 0.0;
+    // Elsewhere, one point outside the grid.
+    LatticePosition place = LatticePosition(by_points ? centre.quantum : ivec2(-1), centre.fraction);
+    vec4 mean = composite_points(place, by_points ? foot : mat2(0.0), by_points ? sample_count : 5 * sample_count - 1);
+    return by_points ? 0.5 * (mean + color) : color;
+#else
+    return mean_of_level(centre, foot, level, texels_per_tap, is_rough);
+#endif
+}
+#endif

@@ -45,6 +45,8 @@ bool crosses_walk(vec2 from, vec2 to, vec2 corner) {
 #include "technique/static_decals/plain_point.glsl"
 #endif
 
+int walked_texels = 0;
+
 // Walks the list of a cell until nothing behind can show.
 Walk walk_cell(Cell cell, vec2 local) {
     Walk walk = begin_walk(cell, local);
@@ -58,6 +60,7 @@ Walk walk_cell(Cell cell, vec2 local) {
         read_word(walk, words.z);
         read_word(walk, words.w);
         left = is_settled(walk) || words.w == LIST_END ? 0u : left == COUNT_ESCAPE ? left : left - 1u;
+        ++walked_texels;
     } while (left != 0u);
     end_group(walk);
     return walk;

@@ -57,11 +57,11 @@ vec4 seen_color(LatticePosition position, mat2 foot, inout float kind) {
 #elif defined(THOENY)
     return composite_thoeny(position, foot);
 #elif defined(CELLS)
-    return composite_cells(position, foot);
+    return composite_area(position, foot);
 #elif defined(POINTS)
-    return composite_points(position, foot);
+    return composite_points(position, foot, 0);
 #elif defined(FROM_LEVELS)
-    return mean_of_levels(position, foot);
+    return composite_levels(position, foot);
 #else
     return color_at(position);
 #endif

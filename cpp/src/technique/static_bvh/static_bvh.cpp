@@ -369,6 +369,8 @@ void StaticBvh::draw_group(size_t index, gl::Flags flags, Strip strip, const Vie
         flags.erase("UNSORTED");
         flags.insert("THOENY");
     }
+    if (flags.count("BORDERS") != 0 && group.grid.cell_count() > FAR_CELLS)
+        flags.insert("FAR");
     const bool has_lens = inside_.prepared && gbuffer.lens != nullptr;
     if (has_lens)
         flags.insert("LENS");
