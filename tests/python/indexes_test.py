@@ -21,6 +21,8 @@ from scenes import View
 from small_scenes import MAP, SIZE, draw, flat_scene
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     FloatArray = NDArray[np.float64]
@@ -119,13 +121,19 @@ def test_coverage_is_the_mean_over_the_pixel(name: str, kind: str) -> None:
     assert found.leak <= 0.02, found
 
 
-@pytest.mark.parametrize("index", ["bvh", dg.BvhIndex(cells=1)], ids=["cells", "cell"])
-def test_a_straight_edge_errs_by_little_in_any_direction(index: str | dg.BvhIndex) -> None:
+@pytest.mark.parametrize(
+    ("index", "turns"),
+    [("bvh", range(12)), (dg.BvhIndex(cells=1), range(12)), (dg.BvhIndex(cells=1000), (1, 5))],
+    ids=["cells", "cell", "far"],
+)
+def test_a_straight_edge_errs_by_little_in_any_direction(
+    index: str | dg.BvhIndex, turns: Sequence[int]
+) -> None:
     """64 samples tell a share of the pixel to 1 / 128; the rest is for the bytes of three pictures.
 
-    Where the map is so small, a pixel has hundreds of cells by default.
+    Where the map is so small, a pixel has hundreds of cells by default, and of more than 2048 not all are searched.
     """
-    for i in range(12):
+    for i in turns:
         turn = np.radians(7.5 * i)
         normal, along = np.array((np.cos(turn), np.sin(turn))), np.array((-np.sin(turn), np.cos(turn)))
         middle = np.array((10.31, 8.31)) + 0.037 * i

@@ -19,8 +19,8 @@ uniform ivec2 drawn_size;
 const float farthest = 1.0;
 const float farthest_at_borders = 0.15;
 // The longer side of a pixel, in cells of the terrain, from which on facets are small.
-const float smallest_facets = 0.75;
-const float farthest_among_small = 0.05;
+const float smallest_facets = 0.8;
+const float farthest_among_small = 0.08;
 
 const ivec2 neighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 

@@ -23,7 +23,7 @@ const int most_looks = 4;
 #ifdef RAYS
 const float cells_before = 1.0;
 #else
-const float cells_before = 4.0;
+const float cells_before = 2.0;
 #endif
 
 // What is seen at the centre of a pixel or a neighbour.

@@ -12,7 +12,7 @@
 
 // Pixels larger than this many cells are sampled point by point.
 const float most_cells_across = 1.5;
-const int most_borders = 8;
+const int most_borders = 10;
 const float most_spread = 0.03;
 // Mesa's software rasteriser ends a shader's loops after 65,535 turns, and quarters take four times as many.
 const int most_words = 4096;
