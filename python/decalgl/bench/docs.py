@@ -25,6 +25,7 @@ PAGES = (
     "docs/techniques/clipmap.md",
     "docs/techniques/volume.md",
     "docs/techniques/loops.md",
+    "docs/techniques/dynamic.md",
 )
 MARKED = re.compile(r"(<!-- bench:(\w+) -->\n).*?(<!-- /bench -->)", re.DOTALL)
 
