@@ -71,4 +71,14 @@ std::vector<uint32_t> reordered(Span<const Decal> decals, Span<const uint32_t> b
     return after;
 }
 
+bool permutes(Span<const uint32_t> numbers, size_t count) {
+    std::vector<bool> seen(count, false);
+    for (const uint32_t number : numbers) {
+        if (number >= count || seen[number])
+            return false;
+        seen[number] = true;
+    }
+    return numbers.size() == count;
+}
+
 }  // namespace decalgl

@@ -56,4 +56,7 @@ std::vector<uint32_t> upwards(Span<const Decal> decals, uint32_t layer, Span<con
 std::vector<uint32_t> reordered(Span<const Decal> decals, Span<const uint32_t> before, uint32_t layer,
                                 Span<const int64_t> draw_order, OutlineOrder outlines);
 
+// Each of the numbers below `count` once.
+bool permutes(Span<const uint32_t> numbers, size_t count);
+
 }  // namespace decalgl

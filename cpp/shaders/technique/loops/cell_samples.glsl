@@ -1,4 +1,4 @@
-// The samples of a pixel's area, cell by cell: those in one cell walk its list together, a bit each. For opaque features.
+// The samples of a pixel's area, cell by cell: those in one cell walk its list together, a bit each.
 #include "shared/sample_offsets.glsl"
 
 // Which of 32 points cross an edge on their ways, or lie on a stroke. `place`: where the pixel's centre is in the cell.
@@ -18,9 +18,41 @@ uint hits(vec4 edge, bool stroke, float half_width, vec2 place, mat2 foot) {
     return found;
 }
 
+// The samples of one cell, front to back. `open`: those that still see something behind what was added.
+struct Samples {
+    uint open;
+    vec4 sum;
+#ifdef TRANSLUCENT
+    float clear[sample_count];  // how much of what lies behind shows through
+#endif
+};
+
+void add_layer(inout Samples samples, uint inside, vec4 straight) {
+    inside &= samples.open;
+#ifdef TRANSLUCENT
+    float weight = 0.0;
+    for (int i = 0; i < sample_count; ++i) {
+        float taken = (inside >> i & 1u) != 0u ? samples.clear[i] * straight.a : 0.0;
+        samples.clear[i] -= taken;
+        weight += taken;
+    }
+    if (straight.a == 1.0) samples.open &= ~inside;
+#else
+    inside = straight.a > 0.0 ? inside : 0u;
+    float weight = float(bitCount(inside));
+    samples.open &= ~inside;
+#endif
+    samples.sum += weight * vec4(straight.rgb, 1.0);
+}
+
 // The sum of the colours that the samples `open` see.
 vec4 walk_together(Cell cell, vec2 place, mat2 foot, uint open) {
-    vec4 sum = vec4(0.0);
+    Samples samples;
+    samples.open = open;
+    samples.sum = vec4(0.0);
+#ifdef TRANSLUCENT
+    for (int i = 0; i < sample_count; ++i) samples.clear[i] = 1.0;
+#endif
     int texel = cell.list;
     bool goes_on;
     do {
@@ -30,17 +62,15 @@ vec4 walk_together(Cell cell, vec2 place, mat2 foot, uint open) {
         uint inside = (header.x & CELL_INSIDE) != 0u ? 0xFFFFFFFFu : 0u;
         do {
             vec4 edge = uintBitsToFloat(texelFetch(cell_texels, texel));
-            uint found = texel < end ? hits(edge, stroke, uintBitsToFloat(header.w), place, foot) : 0u;
+            uint found = texel < end ? hits(edge, stroke, uintBitsToFloat(header.z), place, foot) : 0u;
             inside = stroke ? inside | found : inside ^ found;
             ++texel;
         } while (texel < end);
         texel = end;
-        vec4 color = unpackUnorm4x8(header.z);
-        sum += float(bitCount(inside & open)) * vec4(color.rgb * color.a, color.a);
-        open &= ~inside;
-        goes_on = open != 0u && (header.x & CELL_LAST) == 0u;
+        add_layer(samples, inside, color_of(header.y));
+        goes_on = samples.open != 0u && (header.x & CELL_LAST) == 0u;
     } while (goes_on);
-    return sum;
+    return samples.sum;
 }
 
 // The mean over the pixel's area; `foot`: quanta for a pixel to the right and up.
