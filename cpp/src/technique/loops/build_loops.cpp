@@ -231,9 +231,14 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
     return std::make_unique<PreparedLoops>(std::move(index), std::move(slots), choice.detail);
 }
 
+uint64_t LoopsIndex::bytes() const {
+    return arcs.points.size_bytes() + activations.size_bytes() + steps.size_bytes() +
+           (bvh ? bvh->bases.size_bytes() + bvh->words.size_bytes() : 0);
+}
+
 PreparedCounts PreparedLoops::counts() const {
     return {slots_->decals.size(), index_->segments,
-            index_->bvh ? index_->bvh->counts.references : index_->steps.size(), index_->charge.bytes(),
+            index_->bvh ? index_->bvh->counts.references : index_->steps.size(), index_->bytes(),
             index_->lattice.quantum};
 }
 

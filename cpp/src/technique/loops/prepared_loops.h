@@ -52,7 +52,9 @@ struct LoopsIndex {
     SharedArray<OutlineOrder> outlines;  // of each layer
     uint64_t segments = 0;
     uint64_t needs = 0;
-    MemoryCharge charge;
+    MemoryCharge charge;  // nothing where the arrays lie in a file
+
+    uint64_t bytes() const;
 };
 
 // Numbered as they lay when they were prepared, the topmost first. Copies share what they have in common.
