@@ -1,6 +1,21 @@
 // The samples of a pixel's area, cell by cell: those in one cell walk its list together, a bit each.
 #include "shared/sample_offsets.glsl"
 
+// A bit for each of 32 samples.
+#define SAMPLE_MASK uint
+bool is_empty(uint samples) {
+    return samples == 0u;
+}
+int count_of(uint samples) {
+    return bitCount(samples);
+}
+bool has_sample(uint samples, int index) {
+    return (samples >> index & 1u) != 0u;
+}
+#include "shared/composed_samples.glsl"
+
+uniform float quantum;  // metres, a power of two
+
 // Which of 32 points cross an edge on their ways, or lie on a stroke. `place`: where the pixel's centre is in the cell.
 uint hits(vec4 edge, bool stroke, float half_width, vec2 place, mat2 foot) {
     uint found = 0u;
@@ -18,41 +33,9 @@ uint hits(vec4 edge, bool stroke, float half_width, vec2 place, mat2 foot) {
     return found;
 }
 
-// The samples of one cell, front to back. `open`: those that still see something behind what was added.
-struct Samples {
-    uint open;
-    vec4 sum;
-#ifdef TRANSLUCENT
-    float clear[sample_count];  // how much of what lies behind shows through
-#endif
-};
-
-void add_layer(inout Samples samples, uint inside, vec4 straight) {
-    inside &= samples.open;
-#ifdef TRANSLUCENT
-    float weight = 0.0;
-    for (int i = 0; i < sample_count; ++i) {
-        float taken = (inside >> i & 1u) != 0u ? samples.clear[i] * straight.a : 0.0;
-        samples.clear[i] -= taken;
-        weight += taken;
-    }
-    if (straight.a == 1.0) samples.open &= ~inside;
-#else
-    inside = straight.a > 0.0 ? inside : 0u;
-    float weight = float(bitCount(inside));
-    samples.open &= ~inside;
-#endif
-    samples.sum += weight * vec4(straight.rgb, 1.0);
-}
-
 // The sum of the colours that the samples `open` see.
 vec4 walk_together(Cell cell, vec2 place, mat2 foot, uint open) {
-    Samples samples;
-    samples.open = open;
-    samples.sum = vec4(0.0);
-#ifdef TRANSLUCENT
-    for (int i = 0; i < sample_count; ++i) samples.clear[i] = 1.0;
-#endif
+    Samples samples = samples_of(open);
     int texel = cell.list;
     bool goes_on;
     do {
@@ -67,7 +50,8 @@ vec4 walk_together(Cell cell, vec2 place, mat2 foot, uint open) {
             ++texel;
         } while (texel < end);
         texel = end;
-        add_layer(samples, inside, color_of(header.y));
+        vec4 color = color_of(header.y);
+        lay_under(samples, color.a > 0.0 ? inside : 0u, color);
         goes_on = samples.open != 0u && (header.x & CELL_LAST) == 0u;
     } while (goes_on);
     return samples.sum;

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/archive.h"
-#include "technique/decal_looks.h"
+#include "technique/draw_order.h"
 #include "technique/loops/prepared_loops.h"
 #include "technique/loops/tree_check.h"
 

@@ -4,6 +4,7 @@
 
 #include "decalgl/core/error.h"
 #include "technique/decal_looks.h"
+#include "technique/draw_order.h"
 #include "technique/loops/prepared_loops.h"
 
 namespace decalgl::loops {

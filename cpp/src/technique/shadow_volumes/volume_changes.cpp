@@ -7,6 +7,7 @@
 #include "core/archive.h"
 #include "core/growing_array.h"
 #include "decalgl/core/error.h"
+#include "technique/draw_order.h"
 #include "technique/shadow_volumes/color_groups.h"
 
 namespace decalgl::volume {

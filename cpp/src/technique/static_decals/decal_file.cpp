@@ -7,7 +7,7 @@
 
 #include "core/archive.h"
 #include "decalgl/core/parallel.h"
-#include "technique/decal_looks.h"
+#include "technique/draw_order.h"
 #include "technique/static_decals/prepared_decals.h"
 
 namespace decalgl {
