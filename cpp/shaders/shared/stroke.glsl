@@ -46,11 +46,11 @@ float corner_reach(uint corner, vec2 from, vec2 incoming, vec2 outgoing, float l
     bool in_gap = dot(from, incoming) >= 0.0 && dot(from, outgoing) <= 0.0;
     float reach = max(abs(cross_product(incoming, from)), abs(cross_product(outgoing, from)));
     if (corner == bevel_corner) {
+        // The sine of the turn, from the difference or the sum, whichever is short. Nothing is left of a corner that goes
+        // straight on, or straight back.
         vec2 bend = incoming - outgoing;
-        float half_turn = 0.5 * length(incoming + outgoing);  // its cosine
-        // Nothing is left of a corner that goes straight on, or straight back.
-        bool is_flat = dot(bend, bend) < 1e-14 || half_turn < 1e-6;
-        reach = is_flat ? out_of_reach : max(reach, dot(from, normalize(bend)) / half_turn);
+        float sine = abs(cross_product(incoming, dot(incoming, outgoing) > 0.0 ? bend : incoming + outgoing));
+        reach = sine < 1e-7 ? out_of_reach : max(reach, dot(from, bend) / sine);
     }
     bool pointed = is_pointed(corner, incoming, outgoing, limit);
     return !pointed ? length(from) : in_gap ? reach : out_of_reach;
