@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from . import _core
     from ._sources import Attributes
+    from .camera import Camera
+    from .layer import Layer
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,12 @@ class Technique:
 
     def require_change_of(self, prepared: Technique) -> None:
         """That these choices differ from a layer's only in what needs no preparing. Raises StyleError."""
+
+    def warn_of_layer(self, layer: Layer) -> None:
+        """Warns where a layer asks for more than the technique can draw well."""
+
+    def warn_of_view(self, camera: Camera) -> None:
+        """Warns where a view asks for more than the technique can draw well."""
 
     @property
     def names_widths(self) -> bool:

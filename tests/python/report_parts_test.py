@@ -20,7 +20,7 @@ SOME = [one for one in extremes.EXTREMES if one.name in ("angle", "coordinates")
 
 @pytest.fixture
 def context(tmp_path: Path) -> Context:
-    return Context("tiny", tmp_path, tmp_path, (32, 18), (16, 9), 1, lambda _: None)
+    return Context("tiny", tmp_path, tmp_path, (32, 18), (16, 9), 1, say=lambda _: None)
 
 
 def extreme(name: str) -> extremes.Extreme:
@@ -109,7 +109,9 @@ def test_figures_stand_on_rows_alone() -> None:
     table = figures[0].table
     assert table is not None
     assert {len(row) for row in table.rows} == {1 + len(stability.WAYS)}
-    assert all(cell.startswith("refuses with an error") for row in table.rows for cell in row[1:])
+    assert {cell for row in table.rows for cell in row[1:]} == {
+        f"exact; at {one.quick[-1]:g} refuses" for one in SOME
+    }
 
 
 def test_all_extremes_make_scenes() -> None:
@@ -148,3 +150,14 @@ def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch
     figures = scaling.figures(rows)
     assert figures[0].table is not None
     assert any("Refused: volume" in figure.caption for figure in figures)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "says"),
+    [("line width", 100.0, "wider than their segments"), ("tilt", 1.0, "looks along the ground")],
+)
+def test_clipmaps_say_what_they_draw_badly(name: str, value: float, says: str) -> None:
+    row = judged(name, value, "clipmap")
+    assert row["verdict"] == "warns", row
+    assert says in row["warning"]
+    assert "warning" not in judged(name, 10.0, "clipmap")
