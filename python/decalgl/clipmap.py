@@ -11,7 +11,7 @@ import numpy as np
 from . import _core
 from ._values import is_listed, is_number, is_whole
 from .errors import StyleError, warn
-from .techniques import Technique
+from .techniques import Technique, warn_of_faint_features
 
 if TYPE_CHECKING:
     from .camera import Camera
@@ -92,7 +92,8 @@ class Clipmap(Technique):
             )
 
     def warn_of_layer(self, layer: Layer) -> None:
-        """Warns of lines whose borders cross at many corners, as they are much wider than their segments are long."""
+        """Warns of faint features, and of lines whose borders cross at many corners, as they are wide and winding."""
+        warn_of_faint_features(layer)
         share = _crossed_corners(layer)
         if share > MOST_CROSSED:
             warn(

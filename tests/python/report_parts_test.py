@@ -153,11 +153,20 @@ def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "says"),
-    [("line width", 100.0, "wider than their segments"), ("tilt", 1.0, "looks along the ground")],
+    ("technique", "name", "value", "says"),
+    [
+        ("clipmap", "line width", 100.0, "wider than their segments"),
+        ("clipmap", "tilt", 1.0, "looks along the ground"),
+        ("clipmap", "overlap", 300.0, "blends them into bytes"),
+        ("volume", "overlap", 300.0, "blends them into bytes"),
+    ],
 )
-def test_clipmaps_say_what_they_draw_badly(name: str, value: float, says: str) -> None:
-    row = judged(name, value, "clipmap")
-    assert row["verdict"] == "warns", row
-    assert says in row["warning"]
-    assert "warning" not in judged(name, 10.0, "clipmap")
+def test_techniques_say_what_they_draw_badly(technique: str, name: str, value: float, says: str) -> None:
+    way, make = stability.WAYS[technique], extreme(name).make
+    with pytest.warns(dg.DecalWarning, match=says):
+        picture(way, make(value))
+    picture(way, make(10.0))
+
+
+def picture(way: stability.Way, case: extremes.Case) -> None:
+    way.scene(case).render(case.camera, (32, 18), antialias="none", **way.options)
