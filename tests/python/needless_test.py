@@ -51,9 +51,7 @@ TECHNIQUES = {
     "loops": Way(dg.Loops(), ["loops"], view_bytes=65536),
     "volume": Way(dg.Volume(), ["volume"]),
     "clipmap": Way(dg.Clipmap(), ["clipmap"]),
-    "distance_field": Way(
-        dg.DistanceField(), ["distance_field", "fields", "stylize"], polygons=False, restyles=False
-    ),
+    "distance_field": Way(dg.DistanceField(), ["distance_field", "fields", "stylize"], polygons=False),
 }
 EACH = pytest.mark.parametrize("name", TECHNIQUES)
 
