@@ -1,6 +1,8 @@
 // The samples of a pixel's area, cell by cell: those in one cell walk its list together, a bit each. For opaque features.
 #include "shared/sample_offsets.glsl"
 
+uniform float quantum;  // metres, a power of two
+
 // Which of 32 points cross an edge on their ways, or lie on a stroke. `place`: where the pixel's centre is in the cell.
 uint hits(vec4 edge, bool stroke, float half_width, vec2 place, mat2 foot) {
     uint found = 0u;

@@ -1,6 +1,6 @@
 // One point in the cells of a view: down to its cell, and along that cell's list (cells_layout.h).
 #include "technique/loops/cells_layout.h"
-#include "technique/loops/place.glsl"
+#include "shared/lattice_point.glsl"
 
 uniform usamplerBuffer bucket_entries;
 uniform usamplerBuffer cell_entries;

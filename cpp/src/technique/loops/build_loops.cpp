@@ -194,7 +194,7 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
     index->charge = MemoryCharge(input.memory, "loops: prepared", 0);
     index->first_layer = input.first_layer;
     for (const Layer& layer : input.layers)
-        index->outlines_by_feature.push_back(layer.outline_order == OutlineOrder::feature);
+        index->outlines.push_back(layer.outline_order);
     count_features(input.layers, decals, input.first_layer, *index);
     Hierarchy hierarchy = build_hierarchy(input.layers, input.bounds, input.positions, *input.terrain,
                                           widest_reach(input.layers, input.first_layer, decals),

@@ -48,8 +48,8 @@ struct LoopsIndex {
     LargeArray<Step> steps;
     std::optional<Bvh> bvh;
     uint32_t first_layer = 0;
-    std::vector<uint32_t> first_features;      // of each layer, and how many there are in all
-    std::vector<uint8_t> outlines_by_feature;  // of each layer, whether they lie right over their fills
+    std::vector<uint32_t> first_features;  // of each layer, and how many there are in all
+    std::vector<OutlineOrder> outlines;    // of each layer
     uint64_t features = 0;
     uint64_t segments = 0;
     uint64_t needs = 0;

@@ -1,9 +1,9 @@
 // Other looks for prepared layers: slots are what changes, and the index is shared.
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 #include "decalgl/core/error.h"
+#include "technique/draw_order.h"
 #include "technique/loops/prepared_loops.h"
 
 namespace decalgl::loops {
@@ -25,27 +25,15 @@ void apply(const DecalLook& look, const Decal& decal, double quantum, Style& sty
 }
 
 // Puts the slots of a layer into another order; those of other layers stay where they are.
-void reorder(const LayerLook& look, bool by_feature, Slots& slots) {
-    std::vector<size_t> ranks(look.draw_order.size());
-    for (size_t rank = 0; rank < ranks.size(); ++rank)
-        ranks[static_cast<size_t>(look.draw_order[rank])] = rank;
-    std::vector<size_t> places, order;
-    for (size_t slot = 0; slot < slots.decals.size(); ++slot)
-        if (slots.decals[slot].feature.layer == look.layer)
-            places.push_back(slot);
-    order = places;
-    const auto key = [&](size_t slot) {
-        const Decal& decal = slots.decals[slot];
-        const bool lies_above = decal.role == DecalRole::stroke;
-        const size_t rank = ranks[decal.feature.feature];
-        return by_feature ? std::pair(rank, size_t{lies_above}) : std::pair(size_t{lies_above}, rank);
-    };
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return key(a) > key(b); });
+void reorder(const LayerLook& look, OutlineOrder outlines, Slots& slots) {
+    const std::vector<uint32_t> order = upwards(slots.decals, {}, look.layer, look.draw_order, outlines);
+    std::vector<uint32_t> places = order;
+    std::sort(places.begin(), places.end());
     const std::vector<Decal> decals = slots.decals;
     const std::vector<Style> styles = slots.styles;
     for (size_t i = 0; i < places.size(); ++i) {
-        slots.decals[places[i]] = decals[order[i]];
-        slots.styles[places[i]] = styles[order[i]];
+        slots.decals[places[i]] = decals[order[order.size() - 1 - i]];
+        slots.styles[places[i]] = styles[order[order.size() - 1 - i]];
     }
 }
 
@@ -109,7 +97,7 @@ std::shared_ptr<const Prepared> PreparedLoops::restyled(Span<const LayerLook> lo
         }
         const size_t layer = look.layer - index_->first_layer;
         if (!look.draw_order.empty())
-            reorder(look, index_->outlines_by_feature[layer] != 0, *slots);
+            reorder(look, index_->outlines[layer], *slots);
         has_changes = has_changes || has_widths || !look.draw_order.empty() || !look.fill.colors.empty() ||
                       !look.stroke.colors.empty() || !look.casing.colors.empty();
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "technique/slot_ranks.h"
+#include "technique/draw_order.h"
 #include "technique/static_bvh/cell_objects.h"
 #include "technique/static_bvh/stroke_group.h"
 
