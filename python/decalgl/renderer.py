@@ -162,6 +162,8 @@ class Renderer:
             if stop is not None and stop.error is not None:
                 raise stop.error from None
             raise
+        for layer in scene.layers:
+            layer.technique.warn_of_layer(layer)
         self._prepared = state
         self._cache = cache_name
         self._prepared_layers = scene.layers
@@ -293,6 +295,9 @@ class Renderer:
         # The other indexes draw one sample after the other.
         sampled = self.antialias == "coverage" and self._options["index"] == "grid"
         _warn_of_long_walks(report, COVERAGE_SAMPLES if sampled else 1)
+        layers = [one for one in self._prepared_layers if not isinstance(one, PreparedLayer)]
+        for technique in {layer.technique.name: layer.technique for layer in layers}.values():
+            technique.warn_of_view(fitted)
         self._updated_layers = self._prepared_layers
         return report
 

@@ -102,10 +102,12 @@ void Pipeline::upload_layers(const PreparedScene& scene) {
         const bool is_there = drawer.prepared == pass.prepared && drawer.in_lens == pass.in_lens;
         if (is_there || !pass.shows_anything())
             continue;
+        const bool was_updated = drawer.is_updated;
         drawer.prepared = nullptr;
         drawer.is_updated = false;
         drawer.technique->upload(pass.prepared, pass.in_lens, {&terrain_->heights(), &scene.terrain},
                                  memory_);
+        drawer.is_updated = was_updated && drawer.technique->keeps_update();
         drawer.prepared = pass.prepared;
         drawer.in_lens = pass.in_lens;
     }

@@ -113,7 +113,7 @@ private:
     void add_sample();
     void show_mean(int samples);
     void redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image);
-    bool samples_creases();
+    Facets facets();
     void follow_rays(const Piece& piece);
     std::vector<uint8_t> draw_gathered(const Piece& piece, Span<const uint32_t> pixels);
     void smooth_edges(const Piece& piece);

@@ -3,6 +3,7 @@
 
 #include "decalgl/core/error.h"
 #include "technique/clipmap/prepared_clipmap.h"
+#include "technique/draw_order.h"
 
 namespace decalgl::clipmap {
 namespace {
@@ -10,10 +11,6 @@ namespace {
 [[noreturn]] void refuse(const char* what) {
     throw Error(ErrorKind::unsupported, std::string("technique 'clipmap' ") + what +
                                             "; draw the layer with technique 'static' instead");
-}
-
-bool has_widths(const LayerLook& look) {
-    return !look.stroke.widths.empty() || !look.casing.widths.empty();
 }
 
 }  // namespace

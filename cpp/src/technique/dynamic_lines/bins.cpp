@@ -106,7 +106,7 @@ void LineBins::project(const View& view, const MatchedLines& lines, const Segmen
     looks.bind(program, 3);
     LatticeBase(lines.lattice, view).set(program);
     set_ground_slack(program, view);
-    if (lines.arcs) {
+    if (arcs_) {
         program.set("line_arcs", 4);
         lines.arcs.bind(4);
     }

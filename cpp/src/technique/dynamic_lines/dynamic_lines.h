@@ -24,8 +24,8 @@ public:
     void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                 const TerrainView& terrain, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
-    // Widths are the screen's, whatever the ground does.
-    bool filters_creases() const override { return true; }
+    bool keeps_update() const override { return keeps_update_; }
+    bool follows_slopes() const override { return true; }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
@@ -43,6 +43,7 @@ private:
     LineLooks looks_;
     glm::vec2 ground_heights_{0.0F};        // the lowest and the highest of the terrain
     LineMethod method_ = LineMethod::bins;  // of the latest view
+    bool keeps_update_ = false;             // the latest upload changed colours alone
     std::unique_ptr<LineBins> bins_;
     std::unique_ptr<LineLists> lists_;
 };
