@@ -13,6 +13,7 @@ from style_views import named
 from styled import (
     BANDS,
     BROWN,
+    CORNERS,
     GREY,
     TEAL,
     above,
@@ -32,8 +33,6 @@ if TYPE_CHECKING:
 
     FloatArray = NDArray[np.float64]
 
-CORNERS = ("round", "miter", "bevel")
-CAPS = ("round", "butt", "square")
 MODES = ("normal", "inset", "offset")
 
 

@@ -12,6 +12,8 @@ from shapes import circle, flat_terrain, partition, star, tints, walk
 from style_views import named
 from styled import (
     BANDS,
+    CAPS,
+    CORNERS,
     above,
     aslant,
     bend,
@@ -29,11 +31,6 @@ if TYPE_CHECKING:
     from scenes import View
 
     FloatArray = NDArray[np.float64]
-
-CORNERS = ("round", "miter", "bevel")
-CAPS = ("round", "butt", "square")
-MODES = ("normal", "inset", "offset")
-
 
 # Plain
 

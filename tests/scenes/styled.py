@@ -135,6 +135,8 @@ def bend(at: FloatArray, turn: float, arm: float, heading: float = 25.0) -> Floa
     return np.array([start, at, at + arm * np.array([np.cos(out), np.sin(out)])])
 
 
+CORNERS = ("round", "miter", "bevel")
+CAPS = ("round", "butt", "square")
 BANDS = (
     ColorBand(0.2, (250, 240, 40, 255)),
     ColorBand(0.45, (30, 30, 30, 128)),

@@ -15,12 +15,10 @@ layout(location = 0) out float mark;
 uniform sampler2D surface_texture;
 uniform ivec2 drawn_size;
 
-// In footprints.
-const float farthest = 1.0;
-const float farthest_at_borders = 0.15;
+const float farthest = 1.0;  // footprints
 // The longer side of a pixel, in cells of the terrain, from which on facets are small.
 const float smallest_facets = 0.8;
-const float farthest_among_small = 0.08;
+const float farthest_among_small = 0.08;  // footprints
 
 const ivec2 neighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -35,6 +33,7 @@ float distance_from_plane(vec4 surface, mat2 footprints_of_map, vec4 beside, vec
 
 #ifdef OVERLAY
 uniform sampler2D overlay_texture;
+uniform float farthest_at_borders;  // footprints
 
 // Whether a border of a feature may pass through the pixel: a neighbour shows another colour.
 bool is_at_border(ivec2 pixel) {
@@ -72,7 +71,7 @@ void main() {
     float distance = sky ? 0.0 : surface.z;
     mat2 foot = footprint(place, surface.xy, distance);
     bool is_small = max(length(foot[0]), length(foot[1])) > smallest_facets * cell_at(place, distance);
-    if (at_border && is_small) most = farthest_among_small;
+    if (at_border && is_small) most = min(most, farthest_among_small);
 #endif
     bool marked = false;
     for (int i = 0; i < 4; ++i) {

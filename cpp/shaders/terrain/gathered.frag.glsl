@@ -1,4 +1,4 @@
-// What sixteen rays of each gathered pixel meet; or each of its 64 samples, where it sees many facets (facets.frag.glsl).
+// What the samples of each gathered pixel see, or with RAYS what sixteen rays for them do.
 //
 // What a sample sees lies near what the pixel or a neighbour sees at its centre. So its ray is followed for a few cells
 // around the nearest of those places, then around the nearest of those that lie behind, and so on. Where it meets
@@ -6,7 +6,7 @@
 // is seen at so flat an angle that a pixel spans many cells, the planes stand for it.
 //
 // RAMP   colours by height
-// RAYS   sixteen rays
+// RAYS   sixteen rays a pixel
 #define GATHERED 1
 #include "terrain/march.glsl"
 

@@ -8,22 +8,27 @@ namespace decalgl {
 namespace {
 
 // Texels of a pixel from side to side: shaders/shared/gathered.glsl.
-constexpr int ray_side = 4;
+constexpr int rays_side = 4;
 constexpr int sample_side = 8;
 constexpr int columns = 256;  // pixels in a row of a batch
 constexpr int rows = static_cast<int>(Silhouettes::batch_size) / columns;
 constexpr GLuint pixels_unit = 7;
 
+// Footprints that a neighbour may be seen off a pixel's plane at a border. What follows from slopes goes on over the plane, and
+// is off by more.
+constexpr float farthest_at_borders = 0.15F;
+constexpr float farthest_on_slopes = 0.02F;
+
 using Offsets = std::vector<glm::vec2>;
 
 const Offsets& ray_offsets() {
-    static const Offsets offsets = sample_pattern(ray_side * ray_side);
+    static const Offsets offsets = sample_pattern(rays_side * rays_side);
     return offsets;
 }
 
 int sixteenth_of(glm::vec2 offset) {
-    const glm::ivec2 place(glm::floor((offset + 0.5F) * static_cast<float>(ray_side)));
-    return place.y * ray_side + place.x;
+    const glm::ivec2 place(glm::floor((offset + 0.5F) * static_cast<float>(rays_side)));
+    return place.y * rays_side + place.x;
 }
 
 // In the order of the texels: four samples of a pixel's area are in each sixteenth of it and one ray, as both
@@ -31,12 +36,12 @@ int sixteenth_of(glm::vec2 offset) {
 Offsets offsets_of_samples() {
     constexpr glm::vec2 samples[] = {AREA_SAMPLE_OFFSETS(glm::vec2)};
     Offsets offsets(sample_side * sample_side);
-    for (int ray = 0; ray < ray_side * ray_side; ++ray) {
+    for (int ray = 0; ray < rays_side * rays_side; ++ray) {
         int inside = 0;
         for (const glm::vec2 sample : samples) {
             if (sixteenth_of(sample) != sixteenth_of(ray_offsets()[static_cast<size_t>(ray)]))
                 continue;
-            const int x = 2 * (ray % ray_side) + inside % 2, y = 2 * (ray / ray_side) + inside / 2;
+            const int x = 2 * (ray % rays_side) + inside % 2, y = 2 * (ray / rays_side) + inside / 2;
             offsets[static_cast<size_t>(y * sample_side + x)] = sample;
             ++inside;
         }
@@ -57,10 +62,9 @@ Silhouettes::Silhouettes(int width, int height, bool has_overlay, const MemoryAc
       marks_(gl::Texture2D::create(memory, "silhouettes: marks", GL_R8, width, height)),
       marks_framebuffer_(gl::Framebuffer::create("marks", {{GL_COLOR_ATTACHMENT0, &marks_}})) {}
 
-std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay,
+std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
                                         const Rectangle& drawn, const Rectangle& shown,
-                                        const gl::Texture2D& tile_levels,
-                                        gl::ProgramLibrary& programs) {
+                                        const gl::Texture2D& tile_levels, gl::ProgramLibrary& programs) {
     gl::Program& program =
         programs.get("silhouettes", overlay != nullptr ? gl::Flags{"OVERLAY"} : gl::Flags{});
     marks_framebuffer_.bind();
@@ -72,6 +76,8 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
         overlay->bind(1);
         program.set("tile_levels", 2);
         tile_levels.bind(2);
+        program.set("farthest_at_borders",
+                    facets == Facets::of_samples ? farthest_on_slopes : farthest_at_borders);
     }
     program.set("drawn_size", glm::ivec2(drawn.width, drawn.height));
     no_vertices_.bind();
@@ -95,9 +101,9 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
 }
 
 void Silhouettes::make_batch_targets() {
-    rays_ = GBuffer(ray_side * columns, ray_side * rows, memory_);
-    facets_ = gl::Texture2D::create(memory_, "silhouettes: facets", GL_R8, columns, rows);
-    facets_framebuffer_ = gl::Framebuffer::create("facets", {{GL_COLOR_ATTACHMENT0, &facets_}});
+    rays_ = GBuffer(rays_side * columns, rays_side * rows, memory_);
+    too_few_ = gl::Texture2D::create(memory_, "silhouettes: facets", GL_R8, columns, rows);
+    too_few_framebuffer_ = gl::Framebuffer::create("facets", {{GL_COLOR_ATTACHMENT0, &too_few_}});
     const int width = sample_side * columns, height = sample_side * rows;
     seen_ = std::make_unique<SeenTargets>(width, height, has_overlay_, OverlayDepth::none, memory_);
     composed_ = gl::Texture2D::create(memory_, "silhouettes: composed", GL_RGBA8, width, height);
@@ -118,11 +124,11 @@ int Silhouettes::used_rows() const {
 }
 
 int Silhouettes::ray_columns() const {
-    return ray_side * columns;
+    return rays_side * columns;
 }
 
 int Silhouettes::ray_rows() const {
-    return ray_side * used_rows();
+    return rays_side * used_rows();
 }
 
 int Silhouettes::sample_columns() const {
@@ -139,20 +145,20 @@ void Silhouettes::set_pixels(gl::Program& program) const {
     program.set("gathered_columns", columns);
 }
 
-void Silhouettes::set_rays(gl::Program& program) const {
-    set_pixels(program);
-    set_offsets(program, "gathered_offsets", ray_offsets());
-}
-
 void Silhouettes::set_gathered(gl::Program& program) const {
     static const Offsets offsets = offsets_of_samples();
     set_pixels(program);
     set_offsets(program, "gathered_offsets", offsets);
 }
 
+void Silhouettes::set_rays(gl::Program& program) const {
+    set_pixels(program);
+    set_offsets(program, "gathered_offsets", ray_offsets());
+}
+
 void Silhouettes::count_facets(gl::ProgramLibrary& programs) const {
     gl::Program& program = programs.get("facets");
-    facets_framebuffer_.bind();
+    too_few_framebuffer_.bind();
     program.use();
     program.set("ray_surface_texture", 0);
     rays_.surface.bind(0);
@@ -173,7 +179,7 @@ void Silhouettes::spread(gl::ProgramLibrary& programs) {
     program.set("ray_base_texture", 2);
     rays_.base.bind(2);
     program.set("facets_texture", 3);
-    facets_.bind(3);
+    too_few_.bind(3);
     no_vertices_.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);

@@ -21,6 +21,10 @@
 
 namespace decalgl {
 
+// Which facets of the ground a pixel's samples lie on: those that sixteen rays meet, each for the samples near it, or each
+// sample on its own.
+enum class Facets { of_rays, of_samples };
+
 class Silhouettes {
 public:
     // For rectangles of at most this size.
@@ -28,9 +32,9 @@ public:
 
     // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
     // that of the pixels' centres. overlay: none where creases are left alone.
-    std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, const Rectangle& drawn,
-                               const Rectangle& shown, const gl::Texture2D& tile_levels,
-                               gl::ProgramLibrary& programs);
+    std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
+                               const Rectangle& drawn, const Rectangle& shown,
+                               const gl::Texture2D& tile_levels, gl::ProgramLibrary& programs);
 
     static constexpr size_t batch_size = 8192;
     // Makes a batch of pixels the ones that programs with the flag GATHERED see.
@@ -67,8 +71,8 @@ private:
     gl::TextureBuffer pixels_;
     size_t count_ = 0;
     GBuffer rays_;  // made when first needed, as what follows
-    gl::Texture2D facets_;
-    gl::Framebuffer facets_framebuffer_;
+    gl::Texture2D too_few_;
+    gl::Framebuffer too_few_framebuffer_;
     std::unique_ptr<SeenTargets> seen_;
     gl::Texture2D composed_;
     gl::Framebuffer composed_framebuffer_;

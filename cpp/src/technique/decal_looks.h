@@ -1,4 +1,4 @@
-// Looks of prepared decals, and their order: what techniques have in common that draw one decal after the other.
+// Looks of prepared decals: what techniques have in common that draw one decal after the other.
 #pragma once
 
 #include <algorithm>
@@ -47,13 +47,5 @@ LayerLook layer_look(Span<const Decal> decals, Span<const PlainLook> looks, uint
 // The looks that decals have from now on.
 std::vector<PlainLook> changed_looks(Span<const Decal> decals, Span<const PlainLook> before,
                                      Span<const LayerLook> changes);
-
-// The decals of a layer bottom to top, with its features in this order; what cuts a decal off comes right above it.
-std::vector<uint32_t> upwards(Span<const Decal> decals, uint32_t layer, Span<const int64_t> draw_order,
-                              OutlineOrder outlines);
-
-// All decals bottom to top, given how they lay over each other before; those of the layer share the places that they had.
-std::vector<uint32_t> reordered(Span<const Decal> decals, Span<const uint32_t> before, uint32_t layer,
-                                Span<const int64_t> draw_order, OutlineOrder outlines);
 
 }  // namespace decalgl

@@ -1,4 +1,5 @@
 // What covers the samples of a pixel, 64 of them at once: colours over each other.
+#include "shared/composed_samples.glsl"
 #include "technique/dynamic_lines/line_masks.glsl"
 
 const float overlap = 0.01;  // pixels, so that rounding opens no gap between bars
@@ -131,34 +132,6 @@ uvec2 segment_mask(SeenSegment seen, LineLook look, float whole) {
 #endif
 }
 
-struct Samples {
-    uvec2 open;
-    vec4 sum;
-#ifdef TRANSLUCENT
-    float clear[sample_count];  // how much of what lies behind shows through
-#endif
-};
-
-void add_line(inout Samples samples, uvec2 mask, vec4 straight) {
-    mask &= samples.open;
-#ifdef TRANSLUCENT
-    float weight = 0.0;
-    int i = 0;
-    if (!is_empty(mask)) {
-        do {
-            float taken = has_sample(mask, i) ? samples.clear[i] * straight.a : 0.0;
-            samples.clear[i] -= taken;
-            weight += taken;
-        } while (++i < sample_count);
-    }
-    if (straight.a == 1.0) samples.open &= ~mask;
-#else
-    float weight = float(count_of(mask));
-    samples.open &= ~mask;
-#endif
-    samples.sum += weight * vec4(straight.rgb, 1.0);
-}
-
 // The slot that is looked at, and the samples that it covers.
 struct SampledSlot {
     uint slot;
@@ -199,7 +172,7 @@ void lay_under(inout Samples samples, SampledSlot slot) {
     if (!is_kept(true, slot.look.kind)) mask &= ~slot.inside;
     if (!is_kept(false, slot.look.kind)) mask &= slot.inside;
 #endif
-    if (!is_empty(mask) && slot.look.color.a > 0.0) add_line(samples, mask, slot.look.color);
+    if (!is_empty(mask) && slot.look.color.a > 0.0) lay_under(samples, mask, slot.look.color);
 }
 
 void add_segment(inout SampledSlot slot, SeenSegment seen) {
@@ -214,12 +187,7 @@ void add_segment(inout SampledSlot slot, SeenSegment seen) {
 }
 
 vec4 composed(ScreenPlane plane, ivec2 range) {
-    Samples samples;
-    samples.open = all_samples;
-    samples.sum = vec4(0.0);
-#ifdef TRANSLUCENT
-    for (int i = 0; i < sample_count; ++i) samples.clear[i] = 1.0;
-#endif
+    Samples samples = samples_of(all_samples);
     SampledSlot slot;
     slot.slot = no_slot;
     slot.look = no_look();

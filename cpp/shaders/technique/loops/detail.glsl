@@ -7,6 +7,7 @@
 //          |______________| lowest
 #include "technique/loops/lists.glsl"
 
+uniform float quantum;        // metres, a power of two
 uniform float length_scale;   // metres of a length of 1
 uniform float uniform_bound;  // metres
 #if defined(SCREEN) || defined(BY_DISTANCE)

@@ -1,6 +1,6 @@
 // From a map position to the lists of what may cover it: down the primary tree to a leaf, and along a path of its
 // secondary tree (loops_layout.h).
-#include "technique/loops/place.glsl"
+#include "shared/lattice_point.glsl"
 #include "technique/loops/loops_layout.h"
 
 uniform usamplerBuffer loops_nodes;

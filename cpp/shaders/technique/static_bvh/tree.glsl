@@ -1,6 +1,6 @@
 // The decal grid and the trees of its cells, on the GPU (bvh_layout.h, complete_tree.h).
 #include "shared/view_block.h"
-#include "shared/position.glsl"
+#include "shared/lattice_point.glsl"
 #include "technique/static_bvh/bvh_layout.h"
 #include "technique/static_bvh/integers.glsl"
 
@@ -13,26 +13,6 @@ uniform usamplerBuffer bvh_looks;
 uniform ivec4 grid_box;
 uniform ivec2 grid_size;       // columns, rows
 uniform ivec2 cell_size;       // quanta
-uniform ivec2 first_block;     // the lattice begins at its corner
-uniform int block_shift;       // a block is 2^block_shift quanta
-uniform float quanta_per_metre;
-
-// Beyond every grid, and little enough for sums of 32 bits.
-const float farthest = 1e9;
-
-// The lattice point nearest to a position, moved by some metres.
-ivec2 lattice_point(Position position, vec2 moved) {
-    ivec2 block = position.block - first_block;
-    vec2 offset = position.offset + moved;
-    if (block_shift < 0) {
-        ivec2 rest = block & ((1 << -block_shift) - 1);
-        offset += vec2(rest) * base_offset.z;
-        block >>= -block_shift;
-    } else {
-        block <<= block_shift;
-    }
-    return block + ivec2(clamp(roundEven(offset * quanta_per_metre), -farthest, farthest));
-}
 
 bool holds(ivec4 box, ivec2 point) {
     return all(greaterThanEqual(point, box.xy)) && all(lessThanEqual(point, box.zw));

@@ -7,6 +7,7 @@
 // Every sample lies in one cell and is covered by exactly one of two neighbours, so no background shows through
 // a shared border, and joints, caps and crossings need no special case. The samples are a scrambled
 // (0, 6, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
+#include "shared/composed_samples.glsl"
 #include "technique/static_decals/stroke_area.glsl"
 #include "technique/static_decals/levels.glsl"
 
@@ -89,32 +90,6 @@ uint read_point(inout Group group, uint word) {
     return starts_edge(word) ? for_none : alike_in_crossing(crossing_of(group, group.before, to));
 }
 
-// Front-to-back composition of masks. `open`: samples that still see something behind what was added.
-struct Samples {
-    uvec2 open;
-    vec4 sum;
-#ifdef TRANSLUCENT
-    float clear[sample_count];  // how much of what lies behind shows through
-#endif
-};
-
-void add_layer(inout Samples samples, uvec2 mask, vec4 straight) {
-    mask &= samples.open;
-#ifdef TRANSLUCENT
-    float weight = 0.0;
-    for (int i = 0; i < sample_count; ++i) {
-        float taken = has_sample(mask, i) ? samples.clear[i] * straight.a : 0.0;
-        samples.clear[i] -= taken;
-        weight += taken;
-    }
-    if (straight.a == 1.0) samples.open &= ~mask;
-#else
-    float weight = float(count_of(mask));
-    samples.open &= ~mask;
-#endif
-    samples.sum += weight * vec4(straight.rgb, 1.0);
-}
-
 #ifdef STYLES
 // Of these samples, those that a fill's hatch covers.
 uvec2 shown_samples(Group group, Cell cell, vec2 local, mat2 foot, uvec2 samples) {
@@ -160,13 +135,13 @@ void add_group(inout Samples samples, inout uvec2 open, Group group, Cell cell, 
         int i = 0;
         do {
             uvec2 band = i < last ? within_band[i] : group.covered;
-            add_layer(samples, mask & band & ~inner, color_of_band(group.style, straight, i));
+            lay_under(samples, mask & band & ~inner, color_of_band(group.style, straight, i));
             inner |= band;
         } while (++i <= last);
         return;
     }
 #endif
-    add_layer(samples, mask, straight);
+    lay_under(samples, mask, straight);
 }
 #endif
 
@@ -180,12 +155,7 @@ struct Effort {
 // Most edges decide for all samples alike: the inner loop goes on to the next one that does not.
 // `effort` counts borders, which are rounded one by one, and words.
 vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside, inout Effort effort) {
-    Samples samples;
-    samples.open = inside;
-    samples.sum = vec4(0.0);
-#ifdef TRANSLUCENT
-    for (int i = 0; i < sample_count; ++i) samples.clear[i] = 1.0;
-#endif
+    Samples samples = samples_of(inside);
     float bias = bias_of(cell.bits);
     int at = 4 * int(cell.entry >> COUNT_BITS);
     uint count = cell.entry & COUNT_ESCAPE;
@@ -220,7 +190,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside, inout Effort
 #ifdef STYLES
                 add_group(samples, open, group, cell, local, foot);
 #else
-                if (!is_empty(group.covered) && is_shown(group.slot)) add_layer(samples, group.covered, color_of(group.slot));
+                if (!is_empty(group.covered) && is_shown(group.slot)) lay_under(samples, group.covered, color_of(group.slot));
 #endif
                 group = group_of(word, bias, local, foot);
                 ended = word == LIST_END || is_empty(samples.open);

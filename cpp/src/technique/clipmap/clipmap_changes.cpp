@@ -3,6 +3,7 @@
 
 #include "decalgl/core/error.h"
 #include "technique/clipmap/prepared_clipmap.h"
+#include "technique/draw_order.h"
 
 namespace decalgl::clipmap {
 namespace {
@@ -10,10 +11,6 @@ namespace {
 [[noreturn]] void refuse(const char* what) {
     throw Error(ErrorKind::unsupported, std::string("technique 'clipmap' ") + what +
                                             "; draw the layer with technique 'static' instead");
-}
-
-bool has_widths(const LayerLook& look) {
-    return !look.stroke.widths.empty() || !look.casing.widths.empty();
 }
 
 }  // namespace
@@ -42,7 +39,8 @@ PreparedCounts PreparedClipmap::counts() const {
     const ClipmapGeometry& g = *geometry;
     const Tessellation& t = tessellation;
     return {g.features, g.segments, g.fills.size() + g.lines.size() + t.mesh.size() + t.offsets.size(),
-            g.bytes() + t.mesh.size_bytes() + t.offsets.size_bytes() + looks.size() * sizeof(PlainLook),
+            g.bytes() + t.pairs.size_bytes() + t.mesh.size_bytes() + t.offsets.size_bytes() +
+                looks.size() * sizeof(PlainLook),
             g.texture.texel(finest_level)};
 }
 

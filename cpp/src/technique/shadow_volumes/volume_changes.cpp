@@ -7,6 +7,7 @@
 #include "core/archive.h"
 #include "core/growing_array.h"
 #include "decalgl/core/error.h"
+#include "technique/draw_order.h"
 #include "technique/shadow_volumes/color_groups.h"
 
 namespace decalgl::volume {
@@ -22,21 +23,6 @@ struct VolumeFileRecord {
     uint32_t grouping;
 };
 static_assert(sizeof(VolumeFileRecord) == 56, "saved as it is");
-
-bool has_widths(const LayerLook& look) {
-    return !look.stroke.widths.empty() || !look.casing.widths.empty();
-}
-
-// Each of the numbers below `count` once.
-bool permutes(Span<const uint32_t> numbers, size_t count) {
-    std::vector<bool> seen(count, false);
-    for (const uint32_t number : numbers) {
-        if (number >= count || seen[number])
-            return false;
-        seen[number] = true;
-    }
-    return numbers.size() == count;
-}
 
 // Volumes follow each other by decal, and their corners lead to vertices.
 bool meshes_fit_together(const PreparedVolumes& volumes) {

@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "decalgl/core/error.h"
-#include "technique/slot_ranks.h"
+#include "technique/draw_order.h"
 #include "technique/static_bvh/cell_lists.h"
 #include "technique/static_bvh/data_group.h"
 #include "technique/static_bvh/looks.h"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "decalgl/core/error.h"
+#include "technique/draw_order.h"
 #include "technique/layer_sources.h"
-#include "technique/slot_ranks.h"
 #include "technique/static_decals/draw_order.h"
 #include "technique/static_decals/local_build.h"
 

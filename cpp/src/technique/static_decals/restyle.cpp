@@ -11,7 +11,7 @@
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
 #include "technique/decal_looks.h"
-#include "technique/slot_ranks.h"
+#include "technique/draw_order.h"
 #include "technique/static_decals/draw_order.h"
 #include "technique/static_decals/prepared_decals.h"
 #include "technique/style_changes.h"

@@ -1,12 +1,11 @@
-// Places on the lattice (lattice.h), in quanta.
+// Places on the lattice that vectors were rounded to (lattice.h), in quanta.
 #include "shared/position.glsl"
 
 uniform ivec2 first_block;  // the lattice begins at its corner
 uniform int block_shift;    // a block is 2^block_shift quanta
-uniform float quantum;      // metres, a power of two
 uniform float quanta_per_metre;
 
-// Beyond the lattice, and little enough for sums of 32 bits.
+// Beyond every lattice, and little enough for sums of 32 bits.
 const float farthest = 1e9;
 
 // The lattice point nearest to a position, moved by some metres.

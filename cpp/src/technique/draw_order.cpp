@@ -1,4 +1,4 @@
-#include "technique/slot_ranks.h"
+#include "technique/draw_order.h"
 
 #include <algorithm>
 #include <map>
@@ -55,31 +55,53 @@ std::pair<uint32_t, int> class_of(const Decal& decal, Span<const LayerRules> rul
 
 }  // namespace
 
-LargeArray<uint32_t> reordered_ranks(const LayerLook& look, const LayerRules& rules, Span<const Decal> slots,
-                                     Span<const uint32_t> ranks) {
-    const LayerSlots layer(slots, ranks, look.layer, look.draw_order.size());
-    std::vector<uint32_t> upwards;
-    const auto add = [&](uint32_t slot) { upwards.push_back(slot); };
-    if (rules.outlines_by_feature != 0) {
-        for (const int64_t feature : look.draw_order)
+std::vector<uint32_t> upwards(Span<const Decal> slots, Span<const uint32_t> ranks, uint32_t layer,
+                              Span<const int64_t> draw_order, OutlineOrder outlines) {
+    const LayerSlots own(slots, ranks, layer, draw_order.size());
+    std::vector<uint32_t> result;
+    const auto add = [&](uint32_t slot) { result.push_back(slot); };
+    if (outlines == OutlineOrder::feature) {
+        for (const int64_t feature : draw_order)
             for (const bool below : {true, false})
-                layer.for_each(feature, below, add);
+                own.for_each(feature, below, add);
     } else {
         for (const bool below : {true, false})
-            for (const int64_t feature : look.draw_order)
-                layer.for_each(feature, below, add);
+            for (const int64_t feature : draw_order)
+                own.for_each(feature, below, add);
     }
+    return result;
+}
+
+std::vector<uint32_t> reordered(Span<const Decal> slots, Span<const uint32_t> before, uint32_t layer,
+                                Span<const int64_t> draw_order, OutlineOrder outlines) {
+    const std::vector<uint32_t> own = upwards(slots, {}, layer, draw_order, outlines);
+    std::vector<bool> is_own(slots.size(), false);
+    for (const uint32_t slot : own)
+        is_own[slot] = true;
+    std::vector<uint32_t> after(before.begin(), before.end());
+    size_t next = 0;
+    for (uint32_t& slot : after)
+        if (is_own[slot])
+            slot = own[next++];
+    return after;
+}
+
+LargeArray<uint32_t> reordered_ranks(const LayerLook& look, const LayerRules& rules, Span<const Decal> slots,
+                                     Span<const uint32_t> ranks) {
+    const std::vector<uint32_t> own =
+        upwards(slots, ranks, look.layer, look.draw_order,
+                rules.outlines_by_feature != 0 ? OutlineOrder::feature : OutlineOrder::layer);
     LargeArray<uint32_t> result;
     result.resize(slots.size());
     for (uint32_t slot = 0; slot < result.size(); ++slot)
         result[slot] = rank_of(ranks, slot);
     // They share the ranks that they had.
     std::vector<uint32_t> theirs;
-    for (const uint32_t slot : upwards)
+    for (const uint32_t slot : own)
         theirs.push_back(result[slot]);
     std::sort(theirs.begin(), theirs.end());
     for (size_t i = 0; i < theirs.size(); ++i)
-        result[upwards[upwards.size() - 1 - i]] = theirs[i];
+        result[own[own.size() - 1 - i]] = theirs[i];
     return result;
 }
 
@@ -114,6 +136,16 @@ LargeArray<uint32_t> ranks_with_added(Span<const Decal> slots, Span<const uint32
     for (uint32_t i = 0; i < added.size(); ++i)
         result[slots.size() + i] = above[class_of(added[i], rules)] + i;
     return result;
+}
+
+bool permutes(Span<const uint32_t> numbers, size_t count) {
+    std::vector<bool> seen(count, false);
+    for (const uint32_t number : numbers) {
+        if (number >= count || seen[number])
+            return false;
+        seen[number] = true;
+    }
+    return numbers.size() == count;
 }
 
 }  // namespace decalgl
