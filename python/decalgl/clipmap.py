@@ -42,8 +42,8 @@ class Clipmap(Technique):
     solution: how lines get into tiles, by the paper's numbers: "1" line primitives, "2" tessellated before, "3a" both,
         "3b" tessellated, and wireframe where thin, "4a" by a geometry shader, "4b" by offsets worked out before, in
         rectangular or in "4b polar" coordinates.
-    joints: of angles below `bevel_below` degrees, "3b" (inner borders meet, so nothing is drawn twice) or "3a"; or "1", none
-        at any angle: segments end across, which leaves notches.
+    joints: of angles below `bevel_below` degrees, "3b" (inner borders meet, so nothing is drawn twice) or "3a"; or "1",
+        none at any angle: segments end across, which leaves notches.
     thin_below: texels; thinner lines are line primitives, but for solutions 1 and 2.
     widest_line: texels to which line primitives are clamped.
     widen: (near, far), metres from the camera to the ground: from `near` on widths grow as the distance does, and from

@@ -13,7 +13,7 @@
 namespace decalgl {
 namespace {
 
-constexpr uint32_t block_vertices = 256;
+constexpr uint32_t block_vertices = 32;
 // Pixels by which boxes reach farther than segments: samples lie off the pixels' centres, and shaders compute in float32.
 constexpr double spare_px = 2.0;
 

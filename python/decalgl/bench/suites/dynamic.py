@@ -9,6 +9,7 @@ bytes         of the technique, by vertex, and those that grow with the picture,
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -49,7 +50,7 @@ class Lines:
 
 def measure(work: Workload, records: Records) -> None:
     smallest = next(iter(work.sizes))
-    chosen = [Lines(0.01, smallest, 3, 3), Lines(0.1, smallest, 2, 3), Lines(1.0, smallest, 1, 2, 2)]
+    chosen = [Lines(0.01, smallest, 2, 3), Lines(0.1, smallest, 2, 2), Lines(1.0, smallest, 1, 2, 2)]
     if work.middle != smallest:
         chosen.append(Lines(1.0, work.middle, 0, 1, 1))
     for lines in chosen:
@@ -184,7 +185,7 @@ def some_lines(arrays: Arrays, share: float) -> dg.FeatureTable:
     if share == 1.0:
         return line_table(arrays)
     offsets = arrays["offsets"]
-    pieces = [np.arange(first, end - 1, PIECE) for first, end in zip(offsets[:-1], offsets[1:], strict=True)]
+    pieces = [np.arange(first, end - 1, PIECE) for first, end in itertools.pairwise(offsets)]
     starts = np.concatenate(pieces)
     ends = np.minimum(starts + PIECE + 1, np.repeat(offsets[1:], [len(one) for one in pieces]))
     chosen = np.arange(0, len(starts), round(1.0 / share))
