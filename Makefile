@@ -71,10 +71,11 @@ format: setup  ## Format all sources
 	$(BIN)/ruff format .
 	clang-format -i $(CPP_FILES)
 
-sanitize: setup  ## Run the C++ tests under the address, undefined and thread sanitizers
+sanitize: setup  ## Run the C++ tests, and changes from Python, under the address, undefined and thread sanitizers
 	for preset in asan tsan; do \
 		cmake --preset $$preset && cmake --build --preset $$preset && ctest --preset $$preset; \
 	done
+	tests/sanitize/run.sh $(BIN)/python build/asan
 
 wheel: setup  ## Build a wheel into dist/
 	$(BIN)/python -m pip wheel --no-deps --wheel-dir dist .
