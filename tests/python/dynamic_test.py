@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -279,3 +280,23 @@ def test_outlines_of_polygons() -> None:
     scene.add_polygons([ring], color="none", outline=outline)
     covered = coverage_of(scene, MAP, (100, 100))
     assert np.isclose(covered.sum(), 64.0**2 - 56.0**2, rtol=0.005)
+
+
+def test_a_view_beside_all_lines_updates_nothing() -> None:
+    """Lines around an empty middle: the view into it does no work, and what only reaches into a view is drawn."""
+    scene = on_black(flat_scene())
+    corners = [(5, 5), (95, 5), (95, 95), (5, 95), (5, 5)]
+    scene.add_lines([LineString(ends) for ends in pairwise(corners)], width=6.0, color="#ff0000")
+    renderer = dg.Renderer(size=SMALL, antialias="none")
+    renderer.preprocess(scene)
+    for bounds, is_drawn in (
+        ((40, 40, 60, 55), False),
+        ((5.2, 40, 35.2, 60), True),
+        ((0, 0, 100, 100), True),
+    ):
+        renderer.update(dg.Camera.top_down(bounds))
+        frame = renderer.render()
+        assert (frame.stats.counts["dynamic_kept_vertices"] > 0) == is_drawn
+        assert ("dynamic: simplify" in {one["name"] for one in frame.stats.passes}) == is_drawn
+        assert (frame.image[..., 0] > 0).any() == is_drawn
+        assert (frame.ids >= 0).any() == is_drawn

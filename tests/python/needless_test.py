@@ -47,13 +47,11 @@ TECHNIQUES = {
     "bvh": Way(dg.Static(), ["static_bvh"], options={"index": dg.BvhIndex(cells=8)}),
     "bins": Way(dg.Dynamic(method="bins"), ["dynamic"], polygons=False, pixels=True),
     "lists": Way(dg.Dynamic(method="lists"), ["dynamic"], polygons=False, pixels=True),
-    # Cells of what is active in the view, with its colours.
-    "loops": Way(dg.Loops(), ["loops"], restyles=False, view_bytes=65536),
+    # Cells of what is active in the view.
+    "loops": Way(dg.Loops(), ["loops"], view_bytes=65536),
     "volume": Way(dg.Volume(), ["volume"]),
     "clipmap": Way(dg.Clipmap(), ["clipmap"]),
-    "distance_field": Way(
-        dg.DistanceField(), ["distance_field", "fields", "stylize"], polygons=False, restyles=False
-    ),
+    "distance_field": Way(dg.DistanceField(), ["distance_field", "fields", "stylize"], polygons=False),
 }
 EACH = pytest.mark.parametrize("name", TECHNIQUES)
 

@@ -12,6 +12,7 @@
 #include "frame/surface_readback.h"
 #include "gl/pass_timer.h"
 #include "gl/readback.h"
+#include "gl/sample_query.h"
 
 namespace decalgl {
 namespace {
@@ -410,6 +411,17 @@ double Pipeline::time_floor() {
         draw_full_screen();
     }
     return log.total();
+}
+
+uint64_t Pipeline::count_fragments() {
+    uint64_t total = 0;
+    for (const Piece& piece : pieces_) {
+        draw_centres(piece);
+        gl::SampleQuery query;
+        draw_overlay(targets_->seen, Antialias::none);
+        total += query.count();
+    }
+    return total;
 }
 
 }  // namespace decalgl

@@ -43,6 +43,8 @@ public:
     void draw_surface(std::vector<double>& world, std::vector<float>& depth, std::vector<float>& gradients);
     // Milliseconds that the floor pass takes, for benchmarks.
     double time_floor();
+    // Samples that the layers write in one more drawing.
+    uint64_t count_fragments();
 
     bool draws(const PreparedScene* scene, const PictureRequest& request) const;
     // Since the last update, or since an image that was there already was asked for.

@@ -28,7 +28,9 @@ void DynamicLines::upload(std::shared_ptr<const Prepared> prepared, std::shared_
         prepared_.reset();
         segments_.reset();
         lines_ = MatchedLines();
+        blocks_ = LineBlocks();
         if (next->shows_anything() || (next_lens && next_lens->shows_anything())) {
+            blocks_ = LineBlocks(*next);
             lines_ = match_lines(*next, terrain, memory, programs_);
             ground_heights_ = {terrain.samples->lowest(), terrain.samples->highest()};
             segments_ = std::make_unique<SegmentUpdate>(lines_, next->cell, ground_heights_, memory);
@@ -69,10 +71,15 @@ UpdateReport DynamicLines::update(const View& view) {
     UpdateReport report;
     report.pieces = lines_.segment_count;
     if (segments_) {
-        const SegmentList& seen = segments_->run(view, looks_.reach(), programs_);
         method_ = method_for(view);
-        if (method_ == LineMethod::bins)
-            bins_->update(view, lines_, seen, looks_, programs_);
+        if (blocks_.may_show(view, ground_heights_, looks_.reach())) {
+            const SegmentList& seen = segments_->run(view, looks_.reach(), programs_);
+            if (method_ == LineMethod::bins)
+                bins_->update(view, lines_, seen, looks_, programs_);
+        } else {
+            segments_->see_nothing();
+            bins_->see_nothing();
+        }
         segments_->report(report);
     }
     report.bytes += lines_.vertices.buffer().bytes() + lines_.lines.buffer().bytes() + looks_.bytes() +

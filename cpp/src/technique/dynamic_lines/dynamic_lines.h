@@ -5,6 +5,7 @@
 
 #include "gl/program.h"
 #include "technique/dynamic_lines/bins.h"
+#include "technique/dynamic_lines/line_blocks.h"
 #include "technique/dynamic_lines/line_looks.h"
 #include "technique/dynamic_lines/line_set.h"
 #include "technique/dynamic_lines/lists.h"
@@ -36,6 +37,7 @@ private:
     MemoryAccount memory_;
     std::shared_ptr<const PreparedLines> prepared_;
     std::shared_ptr<const PreparedLines> lens_;  // null without one
+    LineBlocks blocks_;
     MatchedLines lines_;
     std::unique_ptr<SegmentUpdate> segments_;  // null without lines
     LineLooks looks_;
