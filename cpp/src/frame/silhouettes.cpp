@@ -17,7 +17,7 @@ constexpr GLuint pixels_unit = 7;
 // Footprints that a neighbour may be seen off a pixel's plane at a border. What follows from slopes goes on over the plane, and
 // is off by more.
 constexpr float farthest_at_borders = 0.15F;
-constexpr float farthest_on_slopes = 0.02F;
+constexpr float farthest_on_slopes = 0.005F;
 
 using Offsets = std::vector<glm::vec2>;
 
