@@ -250,7 +250,10 @@ def test_a_saved_scene_knows_what_is_in_view(tmp_path: Any) -> None:
 
 
 # What dynamic lines do for a view before they are drawn.
-UPDATES = [f"dynamic: {step}" for step in ("simplify", "compact vertices", "cull", "compact segments", "project", "bins")]
+UPDATES = [
+    f"dynamic: {step}"
+    for step in ("simplify", "compact vertices", "cull", "compact segments", "project", "bins")
+]
 
 
 @pytest.mark.parametrize("name", [name for name, way in TECHNIQUES.items() if way.restyles])
