@@ -128,6 +128,23 @@ def test_comparing_tells_changes_from_noise(
     assert comparison.table(found).row_count == len(worse) + len(better)
 
 
+def test_each_part_of_a_report_has_its_own_drift() -> None:
+    """A machine that was busy during one part makes no other part look quicker; rows are told apart by all words."""
+    before, after = results(5.0, 10.0, 1000), results(10.0, 20.0, 1000)
+    for run, time in ((before, 7.0), (after, 7.1)):
+        words = {"part": "quiet", "scene": "town", "setting": "none"}
+        run["records"] += [
+            {**words, "view": "top", "floor_ms": 5.0},
+            {**words, "draw_ms": time, "draw_ms_spread": 0.0},
+        ]
+    assert not comparison.compare(before, after).changes[-1].better
+    slower = {**after, "records": [*after["records"][:-1], {**after["records"][-1], "draw_ms": 8.0}]}
+    (worse,) = comparison.compare(before, slower).worse
+    assert worse.where == "quiet, town, none"
+    few = comparison.compare({**before, "runs": 2}, {**slower, "runs": 2})
+    assert not few.worse, "spreads of two rounds may be small by chance"
+
+
 def test_runs_without_anything_in_common_are_refused() -> None:
     with pytest.raises(InputError, match="in common"):
         comparison.compare({"records": []}, results(5.0, 10.0, 1000))

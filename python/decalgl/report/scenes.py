@@ -123,9 +123,10 @@ def _paths(context: Context, drawn: Map) -> list[Row]:
         renderer = dg.Renderer(size, **options.get("renderer", {}))
         renderer.preprocess(drawn.scene("auto", options.get("lines", "auto"), options.get("pixels", False)))
         for path, along in paths.items():
-            rounds = [
-                [_step(renderer, camera) for camera in along] for _ in range(1 + context.chosen(1, 1, 3))
-            ]
+            rounds, floors = [], []
+            for _ in range(1 + context.chosen(1, 1, 3)):
+                rounds.append([_step(renderer, camera) for camera in along])
+                floors.append(renderer.time_floor())
             times = [statistics.median(step) for step in zip(*rounds[1:], strict=True)]
             found.append(
                 {
@@ -135,6 +136,7 @@ def _paths(context: Context, drawn: Map) -> list[Row]:
                     "steps": times,
                     "middle_ms": statistics.median(times),
                     "longest_ms": max(times),
+                    "floor_ms": statistics.median(floors[1:]),
                 }
             )
     return found
