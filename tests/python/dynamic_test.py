@@ -125,8 +125,8 @@ def test_coverage_is_that_of_the_reference(style: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("style", [STYLES[0], STYLES[2], STYLES[8]], ids=lambda style: "-".join(style))
 def test_coverage_over_facets_of_a_few_pixels(style: dict[str, Any]) -> None:
-    # Where there is a bend in a pixel at a border, each sample has the plane of its own facet. With 256 samples a pixel the
-    # reference itself errs by 0.006.
+    # Where there is a bend in a pixel at a border, each sample has the plane of its own facet. With 256 samples a pixel
+    # the reference itself errs by 0.006.
     coverage, samples = judged(on_black(hilly_scene()), style, ("coverage", "ssaa"), 32)
     assert coverage.partial > 100
     assert coverage.rms <= 0.015
