@@ -94,14 +94,18 @@ class Clipmap(Technique):
             )
 
     def warn_of_layer(self, layer: Layer) -> None:
-        """Warns of faint features, and of lines whose borders cross at many corners, as they are wide and winding."""
+        """Warns of faint features, and with joints="3a" of lines whose borders cross at many corners, as they are wide
+        and winding.
+        """
         warn_of_faint_features(layer)
+        if self.joints != "3a" or self.solution == "1":
+            return
         share = _crossed_corners(layer)
         if share > MOST_CROSSED:
             warn(
                 f"Layer {layer.name!r}: at {share:.0%} of the corners, the lines are so much wider than their segments"
-                " are long that the strips they are drawn as fold over and may leave gaps. Simplify the lines, draw"
-                " them narrower, or choose technique='static'."
+                " are long that the strips they are drawn as fold over and may leave gaps. Choose joints='3b', simplify"
+                " the lines, draw them narrower, or choose technique='static'."
             )
 
     def warn_of_view(self, camera: Camera) -> None:

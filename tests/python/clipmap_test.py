@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -18,6 +18,9 @@ from decalgl.report.extremes import EXTREMES
 from scenes import View
 from shapes import drawn_by
 from small_scenes import MAP, SIZE, draw, flat_scene, pixel
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 SOLUTIONS = ["1", "2", "3a", "3b", "4a", "4b", "4b polar"]
 TESSELLATED = ["3a", "4a", "4b", "4b polar"]
@@ -46,6 +49,14 @@ def zigzag(technique: dg.Technique, width: float, alpha: float = 1.0) -> dg.Scen
 
 
 # Against the reference
+
+
+def test_joints_that_leave_gaps_in_wide_lines_warn() -> None:
+    scene = zigzag(dg.Clipmap(joints="3a"), 60.0)
+    with pytest.warns(dg.DecalWarning, match="Choose joints='3b'"):
+        draw(scene)
+    draw(zigzag(dg.Clipmap(joints="3a"), 6.0))
+    draw(zigzag(dg.Clipmap(), 60.0))
 
 
 @pytest.mark.parametrize(("name", "value"), [("line width", 100.0), ("sliver", 1e5)])
@@ -360,3 +371,14 @@ def test_styles_that_tiles_cannot_show_are_refused() -> None:
 def test_options_out_of_range(options: dict[str, Any]) -> None:
     with pytest.raises(dg.StyleError, match="Clipmap"):
         dg.Clipmap(**options)
+
+
+def test_saving_and_editing_are_refused(tmp_path: Path) -> None:
+    renderer = dg.Renderer(size=SIZE, antialias="none")
+    renderer.preprocess(zigzag(dg.Clipmap(), 4.0))
+    with pytest.raises(
+        dg.UnsupportedError, match="is not kept on disk; draw the layer with technique 'static'"
+    ):
+        renderer.save(tmp_path / "map.decalgl")
+    with pytest.raises(dg.UnsupportedError, match="cannot edit what it prepared"):
+        renderer.edit(0, remove=[0])

@@ -159,7 +159,6 @@ def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch
 @pytest.mark.parametrize(
     ("technique", "name", "value", "says"),
     [
-        ("clipmap", "line width", 100.0, "wider than their segments"),
         ("clipmap", "tilt", 1.0, "looks along the ground"),
         ("clipmap", "overlap", 300.0, "blends them into bytes"),
         ("volume", "overlap", 300.0, "blends them into bytes"),

@@ -199,7 +199,7 @@ DYNAMIC_SIMPLIFIED = {
 }
 DYNAMIC_ELSEWHERE = {
     **LINES,
-    "frame beside all lines": "{elsewhere_ms:.0f} ms",
+    "frame beside all lines, processor time": "{elsewhere_ms:.0f} ms",
     "÷ ground alone": "{elsewhere:.2f}",
 }
 DYNAMIC_MEMORY = {

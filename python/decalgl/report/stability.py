@@ -123,7 +123,6 @@ REASONS = {
     ): "trees of boxes repeat each feature in every cell, up to the driver's largest array",
     ("overlap", "volume"): "each colour is blended into bytes, and rounding adds up",
     ("overlap", "clipmap"): "each feature is blended into bytes, and rounding adds up",
-    ("line width", "clipmap"): "strips of lines many times wider than their segments leave gaps",
     ("*", "loops"): "simplified by up to half a pixel, as was asked for",
     ("*", "clipmap"): "textures are filtered, and texels end where there are 2^20 along the terrain",
     ("*", "volume"): "a mesh is rasterised: vertices snap to 1/256 of a pixel, and depths to float32",
