@@ -24,10 +24,6 @@ struct VolumeFileRecord {
 };
 static_assert(sizeof(VolumeFileRecord) == 56, "saved as it is");
 
-bool has_widths(const LayerLook& look) {
-    return !look.stroke.widths.empty() || !look.casing.widths.empty();
-}
-
 // Volumes follow each other by decal, and their corners lead to vertices.
 bool meshes_fit_together(const PreparedVolumes& volumes) {
     uint64_t next_corner = 0;
