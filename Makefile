@@ -53,7 +53,8 @@ test: build  ## Run the C++ and Python tests
 bench: build  ## Measure speed and memory on real data
 	$(BIN)/decalgl bench
 
-report: build  ## Draw a report of error against run time into build/report (SIZE=full takes hours)
+report: build  ## Draw a report of error against run time into build/report (SIZE=full takes an evening)
+	test $(SIZE) = quick || $(BIN)/python -m pip install --quiet --constraint packages/python.txt pyflwdir
 	$(BIN)/decalgl report --out build/report --size $(SIZE)
 
 lint: setup  ## Check formatting, style and types

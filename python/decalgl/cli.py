@@ -184,6 +184,9 @@ def report(
         Text,
         typer.Option(help="Of the scenes: offline, small, medium or large. By default as fits the size."),
     ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Keep what an earlier run into the same folder has measured.")
+    ] = False,
     redraw: Annotated[bool, typer.Option("--redraw", help="Only make the page of what is there.")] = False,
     docs: Annotated[bool, typer.Option("--docs", help="Only take what is there over into the docs.")] = False,
 ) -> None:
@@ -191,7 +194,7 @@ def report(
     from .report import command
 
     if not docs:
-        page = command.write(out) if redraw else command.make(out, size, part or [], step)
+        page = command.write(out) if redraw else command.make(out, size, part or [], step, resume)
         messages.print(f"Wrote {page}", markup=False)
         return
     from .report.docs import update

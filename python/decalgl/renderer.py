@@ -162,6 +162,8 @@ class Renderer:
             if stop is not None and stop.error is not None:
                 raise stop.error from None
             raise
+        for layer in scene.layers:
+            layer.technique.warn_of_layer(layer)
         self._prepared = state
         self._cache = cache_name
         self._prepared_layers = scene.layers
@@ -293,6 +295,9 @@ class Renderer:
         # The other indexes draw one sample after the other.
         sampled = self.antialias == "coverage" and self._options["index"] == "grid"
         _warn_of_long_walks(report, COVERAGE_SAMPLES if sampled else 1)
+        layers = [one for one in self._prepared_layers if not isinstance(one, PreparedLayer)]
+        for technique in {layer.technique.name: layer.technique for layer in layers}.values():
+            technique.warn_of_view(fitted)
         self._updated_layers = self._prepared_layers
         return report
 
@@ -318,6 +323,12 @@ class Renderer:
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""
         return self._core.time_floor()
+
+    def count_fragments(self) -> int:
+        """Samples that the layers' passes write for the view in hand, which are drawn for it once more: what is drawn
+        ahead for a view, such as tiles of textures, counts where it is not there yet.
+        """
+        return self._core.count_fragments()
 
 
 def _warn_of_rounding(counts: Mapping[str, float]) -> None:

@@ -14,14 +14,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from .errors import StyleError, UnsupportedError, close_matches
+import numpy as np
+
+from .errors import StyleError, UnsupportedError, close_matches, warn
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from . import _core
     from ._sources import Attributes
+    from .camera import Camera
+    from .layer import Layer
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,12 @@ class Technique:
     def require_change_of(self, prepared: Technique) -> None:
         """That these choices differ from a layer's only in what needs no preparing. Raises StyleError."""
 
+    def warn_of_layer(self, layer: Layer) -> None:
+        """Warns where a layer asks for more than the technique can draw well."""
+
+    def warn_of_view(self, camera: Camera) -> None:
+        """Warns where a view asks for more than the technique can draw well."""
+
     @property
     def names_widths(self) -> bool:
         """Whether the choices say how wide lines are, so that the layer's width is not read."""
@@ -64,6 +73,26 @@ class Static(Technique):
     """World-size lines and polygons (Zechmeister 2020, Thöny et al. 2018); `Renderer` chooses its index."""
 
     name = "static"
+
+
+# Of a colour that is blended into bytes: below, rounding at each feature adds up to more than a sixteenth of all steps.
+FAINTEST_BLENDED = 8  # of 255
+MOST_FAINT = 100  # features of a layer
+
+
+def warn_of_faint_features(layer: Layer) -> None:
+    """Warns of many features so translucent that blending them into bytes, one after the other, rounds them away."""
+    alpha = layer.colors[:, 3]
+    faint = (alpha > 0) & (alpha <= FAINTEST_BLENDED)
+    count = int(np.count_nonzero(faint))
+    if count > MOST_FAINT:
+        least = int(alpha[faint].min())
+        warn(
+            f"Layer {layer.name!r}: {count} features have an opacity of {FAINTEST_BLENDED / 255:.2g} or less, down to"
+            f" {least / 255:.2g}. Technique {layer.technique.name!r} blends them into bytes one after the other: where"
+            f" many lie over each other, colours may be {255 // (2 * least)} of 255 off. Make them more opaque, or"
+            " choose technique='static'."
+        )
 
 
 def resolve_technique(technique: str | Technique, layer_name: str, follows_view: bool) -> Technique:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from . import _core
 from ._values import is_number
 from .errors import StyleError
-from .techniques import Technique
+from .techniques import Technique, warn_of_faint_features
+
+if TYPE_CHECKING:
+    from .layer import Layer
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,10 @@ class Volume(Technique):
             raise StyleError(
                 f"Volume: arc_step must be a number of degrees from 1 to 90, but it is {self.arc_step!r}."
             )
+
+    def warn_of_layer(self, layer: Layer) -> None:
+        """Warns of faint features."""
+        warn_of_faint_features(layer)
 
     def core_options(self) -> _core.TechniqueOptions:
         """As the core takes them."""

@@ -12,7 +12,7 @@ import shapely
 
 import decalgl as dg
 from decalgl import cli
-from decalgl.bench import command, comparison, goals, shapes, tables, terminal, workload
+from decalgl.bench import artefacts, command, comparison, goals, shapes, tables, terminal, workload
 from decalgl.bench.measure import interleaved
 from decalgl.bench.suites import SUITES
 from decalgl.errors import InputError
@@ -128,6 +128,23 @@ def test_comparing_tells_changes_from_noise(
     assert comparison.table(found).row_count == len(worse) + len(better)
 
 
+def test_each_part_of_a_report_has_its_own_drift() -> None:
+    """A machine that was busy during one part makes no other part look quicker; rows are told apart by all words."""
+    before, after = results(5.0, 10.0, 1000), results(10.0, 20.0, 1000)
+    for run, time in ((before, 7.0), (after, 7.1)):
+        words = {"part": "quiet", "scene": "town", "setting": "none"}
+        run["records"] += [
+            {**words, "view": "top", "floor_ms": 5.0},
+            {**words, "draw_ms": time, "draw_ms_spread": 0.0},
+        ]
+    assert not comparison.compare(before, after).changes[-1].better
+    slower = {**after, "records": [*after["records"][:-1], {**after["records"][-1], "draw_ms": 8.0}]}
+    (worse,) = comparison.compare(before, slower).worse
+    assert worse.where == "quiet, town, none"
+    few = comparison.compare({**before, "runs": 2}, {**slower, "runs": 2})
+    assert not few.worse, "spreads of two rounds may be small by chance"
+
+
 def test_runs_without_anything_in_common_are_refused() -> None:
     with pytest.raises(InputError, match="in common"):
         comparison.compare({"records": []}, results(5.0, 10.0, 1000))
@@ -144,3 +161,25 @@ def test_the_command_compares_two_files(tmp_path: Path, capfd: pytest.CaptureFix
     for wrong in (other, tmp_path / "absent.json"):
         assert cli.run(["bench", "--compare", str(before), str(wrong)]) == 2
         assert capfd.readouterr().err.startswith("error: ")
+
+
+def test_overdraw_is_what_faces_write() -> None:
+    """A hull seen from above: its lid lies before the ground, its bottom behind, and walls stand on edge."""
+
+    def scene_of(technique: dg.Technique) -> dg.Scene:
+        scene = dg.Scene(dg.Terrain.flat((0.0, 0.0, 100.0, 100.0)))
+        scene.add_polygons([shapely.box(20, 20, 80, 80)], technique=technique)
+        return scene
+
+    camera = dg.Camera.top_down((0.0, 0.0, 100.0, 100.0))
+    volume = artefacts.overdraw(scene_of, dg.Volume(), camera, (100, 100))
+    assert volume == pytest.approx(2.0, abs=0.1)  # the bottom, and the mask
+    assert artefacts.overdraw(scene_of, dg.Static(), camera, (100, 100)) == pytest.approx(0.0, abs=0.1)
+
+
+def test_artefacts_are_there_and_mended() -> None:
+    assert artefacts.intrusion() == 1.0
+    assert artefacts.intrusion(mend_intrusion=True, widths_at="vertex") == 0.0
+    assert artefacts.protrusion() == pytest.approx(15.0, abs=1.0)
+    assert artefacts.protrusion(mend_protrusion=True) == 0.0
+    assert 0.1 < artefacts.steps() <= 0.5

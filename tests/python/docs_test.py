@@ -118,5 +118,5 @@ def test_figures_are_those_of_the_last_benchmark() -> None:
     results = docs.read_results(ROOT)
     for page in docs.PAGES:
         text = (ROOT / page).read_text()
-        assert docs.MARKED.search(text), page
+        assert docs.marked("bench").search(text), page
         assert docs.fill(text, results) == text, f"{page}: run decalgl bench --docs"

@@ -20,7 +20,7 @@ SOME = [one for one in extremes.EXTREMES if one.name in ("angle", "coordinates")
 
 @pytest.fixture
 def context(tmp_path: Path) -> Context:
-    return Context("tiny", tmp_path, tmp_path, (32, 18), (16, 9), 1, lambda _: None)
+    return Context("tiny", tmp_path, tmp_path, (32, 18), (16, 9), 1, say=lambda _: None)
 
 
 def extreme(name: str) -> extremes.Extreme:
@@ -38,22 +38,26 @@ def stored(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def test_no_technique_runs_what_a_scene_does_not_need() -> None:
-    rows = [row for name in ("static", "dynamic", "distance_field") for row in needless.states(name)]
+    names = ("static", "static bvh", "dynamic lists", "distance_field")
+    rows = [row for name in names for row in needless.states(name)]
     assert [(row["technique"], row["scene"], row["needless"]) for row in rows if row["needless"]] == []
     assert {row["scene"] for row in rows} >= {"hidden", "nothing in view", "unchanged", "another colour"}
     figures = needless.figures(stored(rows))
     assert figures[0].table is None
-    assert len(figures) == 4
+    assert len(figures) == 2 + len(names)
+    weighed = {row["technique"]: row["times"] for row in rows if "times" in row}
+    assert weighed["static"] < 10.0
+    assert weighed["dynamic lists"] < 3.0
 
 
 def test_what_is_needless_is_found() -> None:
-    needs = needless.Needs(needless.GROUND, style="one colour", uploads=10)
+    needs = needless.Needs(needless.GROUND, uploads=10)
     assert needless.surplus(["terrain", "upload"], ["static_decals[LENS,LINES]"], 11, {}, needs) == [
         "pass upload",
         "static_decals[LENS,LINES]: LENS",
-        "11 bytes uploaded",
+        "1 of 11 bytes uploaded",
     ]
-    hidden = needless.Needs(needless.FIRST, layers=False)
+    hidden = needless.Needs(needless.FIRST, 0, layers=False)
     ran = needless.surplus(["upload", "static"], [], 0, {"frame: overlay": 1}, hidden)
     assert ran == ["pass static", "an overlay"]
 
@@ -109,7 +113,9 @@ def test_figures_stand_on_rows_alone() -> None:
     table = figures[0].table
     assert table is not None
     assert {len(row) for row in table.rows} == {1 + len(stability.WAYS)}
-    assert all(cell.startswith("refuses with an error") for row in table.rows for cell in row[1:])
+    assert {cell for row in table.rows for cell in row[1:]} == {
+        f"exact; at {one.quick[-1]:g} refuses" for one in SOME
+    }
 
 
 def test_all_extremes_make_scenes() -> None:
@@ -148,3 +154,23 @@ def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch
     figures = scaling.figures(rows)
     assert figures[0].table is not None
     assert any("Refused: volume" in figure.caption for figure in figures)
+
+
+@pytest.mark.parametrize(
+    ("technique", "name", "value", "says"),
+    [
+        ("clipmap", "line width", 100.0, "wider than their segments"),
+        ("clipmap", "tilt", 1.0, "looks along the ground"),
+        ("clipmap", "overlap", 300.0, "blends them into bytes"),
+        ("volume", "overlap", 300.0, "blends them into bytes"),
+    ],
+)
+def test_techniques_say_what_they_draw_badly(technique: str, name: str, value: float, says: str) -> None:
+    way, make = stability.WAYS[technique], extreme(name).make
+    with pytest.warns(dg.DecalWarning, match=says):
+        picture(way, make(value))
+    picture(way, make(10.0))
+
+
+def picture(way: stability.Way, case: extremes.Case) -> None:
+    way.scene(case).render(case.camera, (32, 18), antialias="none", **way.options)

@@ -14,6 +14,7 @@ import pytest
 import decalgl as dg
 from decalgl import cli, reference
 from decalgl.bench import comparison
+from decalgl.bench.docs import marked
 from decalgl.errors import InputError
 from decalgl.report import case_studies, command, derive, docs, factors, page, parts, plots, views
 from decalgl.report.accuracy import seen_part
@@ -101,7 +102,7 @@ def test_the_documentation_is_that_of_the_last_report() -> None:
     results = comparison.read(ROOT / docs.KEPT)
     for page_name in docs.PAGES:
         text = (ROOT / page_name).read_text()
-        assert docs.MARKED.search(text), page_name
+        assert marked("report").search(text), page_name
         assert docs.fill(text, results) == text, f"{page_name}: run decalgl report --out DIR --docs"
 
 

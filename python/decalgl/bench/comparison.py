@@ -2,7 +2,8 @@
 
 Times come with their spread, half of what lies between the quartiles. A machine that is slower today is so for the
 passes that no change touches too, the floor and the radix sort: times are divided by how much longer those took, their
-drift. Bytes have no noise.
+drift, that of the same scene or part where it has some, since hours may lie between them. How far drifts lie apart is
+noise. Bytes have none.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from rich.table import Table
 
 from ..errors import FileError, InputError
+from .measure import spread
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -23,12 +25,16 @@ if TYPE_CHECKING:
     from .records import Record
 
     Results = Mapping[str, Any]
+    Pair = tuple[Record, Record]
 
 CONTROLS = ("floor_ms", "radix_sort_ms")
 SPREADS = 4.0  # of the noisier run, from which on a difference counts
 LEAST_TIME = 0.05  # as a share: less is never a difference
-UNKNOWN_SPREAD = 0.05  # of times of one round
+UNKNOWN_SPREAD = 0.05  # of times of one round, and the least of those of two or three
+FEW_RUNS = 3
 LEAST_BYTES = 0.01
+# Words of a record that follow from others.
+NOT_SHOWN = ("picture", "source", "like", "sweep", "step", "verdict", "warning", "error", "refused")
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,19 @@ class Change:
     def better(self) -> bool:
         """Whether it shrank beyond the noise."""
         return self.share < 1.0 / self.noise
+
+
+@dataclass(frozen=True)
+class Drift:
+    """How much longer the passes took that no change touches, and the spread of that."""
+
+    share: float = 1.0
+    spread: float = 0.0
+
+    @staticmethod
+    def of(shares: list[float]) -> Drift:
+        """The median, and its spread where there are several."""
+        return Drift(statistics.median(shares), spread(shares) if len(shares) > 1 else 0.0)
 
 
 @dataclass(frozen=True)
@@ -90,12 +109,40 @@ def compare(before: Results, after: Results) -> Comparison:
     """The numbers that both runs have, beside each other. Raises InputError where there are none."""
     earlier = {_key(record): record for record in before["records"]}
     pairs = [(earlier[key], record) for record in after["records"] if (key := _key(record)) in earlier]
-    shares = [new[name] / old[name] for old, new in pairs for name in CONTROLS if _measured(old, new, name)]
-    drift = statistics.median(shares) if shares else 1.0
-    changes = [change for old, new in pairs for change in _changes(old, new, drift)]
+    drifts = _drifts(pairs)
+    few = [_has_few_runs(run) for run in (before, after)]
+    changes = [change for pair in pairs for change in _changes(*pair, _drift_at(drifts, pair), any(few))]
     if not changes:
         raise InputError("The two runs have no time and no size in common. Compare runs of the same suites.")
-    return Comparison(changes, len(changes), drift, list(_notes(before, after)))
+    whole = drifts.get((), Drift())
+    return Comparison(changes, len(changes), whole.share, list(_notes(before, after)))
+
+
+def _drifts(pairs: list[Pair]) -> dict[tuple[str, ...], Drift]:
+    """By part and scene, by part, and that of all."""
+    shares: dict[tuple[str, ...], list[float]] = {}
+    for old, new in pairs:
+        for name in CONTROLS:
+            if _measured(old, new, name):
+                for place in _places(new):
+                    shares.setdefault(place, []).append(new[name] / old[name])
+    return {place: Drift.of(some) for place, some in shares.items()}
+
+
+def _places(record: Record) -> list[tuple[str, ...]]:
+    """Those of a drift, the nearest first."""
+    part = str(record.get("part", ""))
+    return [(part, str(record.get("scene", ""))), (part,), ()]
+
+
+def _drift_at(drifts: Mapping[tuple[str, ...], Drift], pair: Pair) -> Drift:
+    return next((drifts[place] for place in _places(pair[1]) if place in drifts), Drift())
+
+
+def _has_few_runs(results: Results) -> bool:
+    """Whether spreads are those of so few rounds that they may be small by chance."""
+    parts = results.get("parts", {}).values()
+    return any(run.get("runs", FEW_RUNS + 1) <= FEW_RUNS for run in (results, *parts))
 
 
 def table(found: Comparison) -> Table:
@@ -117,19 +164,24 @@ def summary(found: Comparison) -> str:
     return "\n".join([*lines, *found.notes])
 
 
-def _changes(old: Record, new: Record, drift: float) -> Iterator[Change]:
+def _changes(old: Record, new: Record, drift: Drift, few_runs: bool) -> Iterator[Change]:
     for name in new:
         if not _measured(old, new, name) or name in CONTROLS:
             continue
-        where = ", ".join(str(new[part]) for part in ("scene", "technique", "view") if new.get(part))
         share = new[name] / old[name]
         if name.endswith("_ms"):
-            spread = max(one.get(f"{name}_spread", UNKNOWN_SPREAD) for one in (old, new))
-            yield Change(
-                where, name, old[name], new[name], share / drift, 1.0 + max(LEAST_TIME, SPREADS * spread)
-            )
+            own = max(one.get(f"{name}_spread", UNKNOWN_SPREAD) for one in (old, new))
+            noise = SPREADS * (max(own, UNKNOWN_SPREAD if few_runs else 0.0) + drift.spread)
+            limit = 1.0 + max(LEAST_TIME, noise)
+            yield Change(_where(new), name, old[name], new[name], share / drift.share, limit)
         elif "bytes" in name:
-            yield Change(where, name, old[name], new[name], share, 1.0 + LEAST_BYTES)
+            yield Change(_where(new), name, old[name], new[name], share, 1.0 + LEAST_BYTES)
+
+
+def _where(record: Record) -> str:
+    """The words that tell a record from others, as far as they are short."""
+    words = [value for name, value in record.items() if isinstance(value, str) and name not in NOT_SHOWN]
+    return ", ".join(word for word in words if word)
 
 
 def _measured(old: Record, new: Record, name: str) -> bool:

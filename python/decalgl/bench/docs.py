@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 from .tables import BLOCKS
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
     from pathlib import Path
+    from typing import Any
 
     from .tables import Results
 
@@ -25,8 +27,8 @@ PAGES = (
     "docs/techniques/clipmap.md",
     "docs/techniques/volume.md",
     "docs/techniques/loops.md",
+    "docs/techniques/dynamic.md",
 )
-MARKED = re.compile(r"(<!-- bench:(\w+) -->\n).*?(<!-- /bench -->)", re.DOTALL)
 
 
 def write_pages(root: Path) -> list[Path]:
@@ -50,4 +52,14 @@ def read_results(root: Path) -> Results:
 
 def fill(text: str, results: Results) -> str:
     """The text with its marked blocks made anew."""
-    return MARKED.sub(lambda found: f"{found[1]}{BLOCKS[found[2]](results)}\n{found[3]}", text)
+    return filled("bench", BLOCKS, text, results)
+
+
+def filled(word: str, blocks: Mapping[str, Callable[[Any], str]], text: str, results: Any) -> str:
+    """The text with what stands between <!-- word:NAME --> and <!-- /word --> made anew by the block of that name."""
+    return marked(word).sub(lambda found: f"{found[1]}{blocks[found[2]](results)}\n{found[3]}", text)
+
+
+def marked(word: str) -> re.Pattern[str]:
+    """What stands between the marks of a word."""
+    return re.compile(rf"(<!-- {word}:(\w+) -->\n).*?(<!-- /{word} -->)", re.DOTALL)

@@ -28,16 +28,17 @@ def main() -> None:
     table = scene.layers[0].features
     renderer = dg.Renderer()
     Path("/proc/self/clear_refs").write_text("5")  # the peak is what is held now
-    before = _kilobytes("VmRSS")
+    before = of_process("VmRSS")
     renderer.preprocess(scene)
-    peak = 1024 * (_kilobytes("VmHWM") - before)
+    peak = of_process("VmHWM") - before
     held = table.coords.nbytes + table.part_offsets.nbytes + table.feature_offsets.nbytes
     print(json.dumps({"peak_bytes": peak, "input_bytes": held}))
 
 
-def _kilobytes(name: str) -> int:
+def of_process(name: str) -> int:
+    """Bytes that this process holds (VmRSS), or held at its peak (VmHWM)."""
     lines = STATUS.read_text().splitlines()
-    return next(int(line.split()[1]) for line in lines if line.startswith(f"{name}:"))
+    return 1024 * next(int(line.split()[1]) for line in lines if line.startswith(f"{name}:"))
 
 
 if __name__ == "__main__":

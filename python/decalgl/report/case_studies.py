@@ -104,6 +104,14 @@ class CaseStudy:
     make: Callable[[Step], tuple[dg.Terrain, list[Part]]]
 
 
+def vertices(scene: dg.Scene) -> int:
+    """As the thesis counts them: outlines are lines too, and their vertices count once more."""
+    outlined = [layer.kind == "polygons" and layer.stroke is not None for layer in scene.layers]
+    return sum(
+        len(layer.features.coords) * (1 + twice) for layer, twice in zip(scene.layers, outlined, strict=True)
+    )
+
+
 def build(name: str, step: Step) -> Map:
     """The map of that name. Raises DecalError where its data cannot be had."""
     ground, parts = CASE_STUDIES[name].make(step)

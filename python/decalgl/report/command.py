@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import csv
+import functools
 import json
-import time
 from typing import TYPE_CHECKING, Any, cast
 
 from rich.console import Console
@@ -16,7 +16,7 @@ from .part import SIZES, STEPS, Context, Row, Size, Step
 from .parts import PARTS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
 TITLE = "decalgl: error against run time"
@@ -25,15 +25,24 @@ NOTE = (
     " turns; errors are those against decalgl.reference, and the same on every run."
 )
 STEPS_KNOWN = ("tiny", "offline", "small", "medium", "large")
-PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (480, 270), "full": (1280, 720)}
-CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 9), "quick": (80, 45), "full": (320, 180)}
-RUNS: dict[Size, int] = {"tiny": 1, "quick": 2, "full": 5}
+# Of the full report there are 1500 pictures and 64 references: larger ones would make hours days.
+PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (480, 270), "full": (640, 360)}
+CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 9), "quick": (80, 45), "full": (80, 45)}
+RUNS: dict[Size, int] = {"tiny": 1, "quick": 2, "full": 3}
 
 
-def make(out: Path, size: str, names: Sequence[str] = (), step: str | None = None, say: Any = None) -> Path:
+def make(
+    out: Path,
+    size: str,
+    names: Sequence[str] = (),
+    step: str | None = None,
+    resume: bool = False,
+    say: Any = None,
+) -> Path:
     """Measures the parts of these names, all where none is given, and writes the page. Raises DecalError.
 
-    step: of the case studies, by default as fits the size.
+    step: of the case studies, by default as fits the size. resume: takes what an earlier run into the same folder has
+    measured as it is.
     """
     if size not in SIZES:
         raise errors.InputError(f"There is no --size {size!r}. Choose from {', '.join(SIZES)}.")
@@ -52,31 +61,32 @@ def make(out: Path, size: str, names: Sequence[str] = (), step: str | None = Non
         crop=CROP[chosen],
         runs=RUNS[chosen],
         say=say or Console(stderr=True, highlight=False).print,
+        resume=resume,
     )
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise errors.FileError(f"{out} cannot be written: {error.strerror}. Choose another --out.") from error
+    parts: dict[str, Any] = {}
     records: list[Row] = []
     for name in names or PARTS:
-        started = time.monotonic()
         context.say(f"[bold]{name}[/]")
-        records += [{"part": name, **row} for row in PARTS[name].rows(context)]
-        context.say(f"{time.monotonic() - started:.0f} s")
-        _store(context, records)
+        rows = context.kept(name, functools.partial(PARTS[name].rows, context))
+        records += [{"part": name, **row} for row in rows]
+        seconds = round(context.seconds[name])
+        parts[name] = {"size": size, "step": context.step, "runs": context.runs, "seconds": seconds}
+        context.say(f"{seconds} s")
+        # After each part, so that a report that breaks off keeps what it has.
+        results = {"machine": measure.machine(), "parts": parts, "records": records}
+        (out / "report.json").write_text(as_text(results))
     return write(out)
 
 
-def _store(context: Context, records: list[Row]) -> None:
-    """After each part, so that a report that breaks off keeps what it has."""
-    results = {
-        "machine": measure.machine(),
-        "runs": context.runs,
-        "size": context.size,
-        "step": context.step,
-        "records": records,
-    }
-    (context.out / "report.json").write_text(json.dumps(results, indent=1) + "\n")
+def as_text(results: Mapping[str, Any]) -> str:
+    """JSON with a line for each record."""
+    head = json.dumps({name: value for name, value in results.items() if name != "records"}, indent=1)
+    lines = ",\n".join(json.dumps(record, ensure_ascii=False) for record in results["records"])
+    return f'{head.removesuffix("}").rstrip()},\n "records": [\n{lines}\n]}}\n'
 
 
 def write(out: Path) -> Path:
@@ -89,8 +99,17 @@ def write(out: Path) -> Path:
             _write_csv(out / f"{name}.csv", rows)
             sections.append(Section(name, part.TITLE, part.ABOUT, part.figures(rows)))
     target = out / "index.html"
-    target.write_text(page(TITLE, results["machine"], NOTE, sections), encoding="utf-8")
+    target.write_text(
+        page(TITLE, results["machine"], f"{NOTE} {_extent(results)}", sections), encoding="utf-8"
+    )
     return target
+
+
+def _extent(parts: Mapping[str, Any]) -> str:
+    """How much was measured, in how long."""
+    sizes = ", ".join(dict.fromkeys(one["size"] for one in parts.values()))
+    minutes = sum(one["seconds"] for one in parts.values()) / 60.0
+    return f"Size: {sizes}. Measured in {minutes:.0f} minutes."
 
 
 def _write_csv(path: Path, rows: Sequence[Row]) -> None:

@@ -1,28 +1,35 @@
 """The documentation's figures that come from the report: `decalgl report --out DIR --docs`.
 
-The report's numbers are kept in bench/results/report.json. What stands between <!-- report:choices --> and
-<!-- /report --> of a page is replaced by the table of what to choose when, and the plot over all scenes is redrawn.
+The report's numbers are kept in bench/results/report.json; parts that a report leaves out stay as they were kept, each
+with the size and the machine that it was measured with. What stands between <!-- report:NAME --> and
+<!-- /report --> of a page is replaced by what `BLOCKS` makes for NAME, and the plot over all scenes is redrawn.
 """
 
 from __future__ import annotations
 
-import re
-import shutil
 from typing import TYPE_CHECKING
 
 from ..bench import comparison, folders
+from ..bench.docs import filled
 from ..errors import InputError
-from . import choices, error_over_time
+from . import choices, error_over_time, sizes, stability
+from .command import as_text
+from .part import number
+from .parts import PARTS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
     from pathlib import Path
     from typing import Any
 
-PAGES = ("README.md", "docs/report.md")
+    from .part import Row, Table
+
+    Results = Mapping[str, Any]
+
+PAGES = ("README.md", "docs/report.md", "docs/extremes.md")
 PLOT = "docs/images/error_over_time.svg"
 KEPT = "bench/results/report.json"
-MARKED = re.compile(r"(<!-- report:choices -->\n).*?(<!-- /report -->)", re.DOTALL)
+DIGITS = 5  # of the numbers that are kept
 
 
 def update(out: Path) -> list[Path]:
@@ -30,8 +37,9 @@ def update(out: Path) -> list[Path]:
     root = folders.checkout()
     if root is None:
         raise InputError("There is no documentation beside an installed package. Run --docs in a checkout.")
-    shutil.copyfile(out / "report.json", root / KEPT)
-    results = comparison.read(root / KEPT)
+    kept = root / KEPT
+    results = merged(comparison.read(kept), comparison.read(out / "report.json"))
+    kept.write_text(as_text(results))
     (root / PLOT).write_text(plot(results), encoding="utf-8")
     for page in PAGES:
         path = root / page
@@ -39,27 +47,85 @@ def update(out: Path) -> list[Path]:
     return [root / name for name in (KEPT, PLOT, *PAGES)]
 
 
-def plot(results: Mapping[str, Any]) -> str:
+def merged(kept: Results, new: Results) -> dict[str, Any]:
+    """What is kept, its parts replaced by those that are new, with as many digits as matter."""
+    parts = {name: {**one, "machine": new["machine"]} for name, one in new["parts"].items()}
+    stay = [row for row in kept["records"] if row["part"] not in parts]
+    records = [*stay, *(_rounded(row) for row in new["records"])]
+    records.sort(key=lambda row: list(PARTS).index(row["part"]))
+    return {"machine": new["machine"], "parts": {**kept["parts"], **parts}, "records": records}
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _rounded(one) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_rounded(one) for one in value]
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
+
+
+def plot(results: Results) -> str:
     """The plot over all scenes, as the text of an SVG file."""
     figure = error_over_time.over_all(_drawn(results))
     assert isinstance(figure.plot, str)
     return figure.plot
 
 
-def fill(text: str, results: Mapping[str, Any]) -> str:
+def fill(text: str, results: Results) -> str:
     """The text with its marked tables made anew."""
-    table = choices.figure(_drawn(results)).table
+    return filled("report", BLOCKS, text, results)
+
+
+def _choices(results: Results) -> str:
+    drawn = _drawn(results)
+    table = choices.figure(drawn).table
     assert table is not None
+    scenes = dict.fromkeys(row["scene"] for row in drawn)
+    return f"{_lines(table)}\n\nOf the scenes {', '.join(scenes)}. {_origin(results, 'error_over_time')}"
+
+
+def _sizes(results: Results) -> str:
+    return f"{_lines(sizes.table(_rows(results, 'sizes')))}\n\n{_origin(results, 'sizes')}"
+
+
+def _verdicts(results: Results) -> str:
+    return f"{_lines(stability.verdicts(_rows(results, 'stability')))}\n\n{_origin(results, 'stability')}"
+
+
+def _times(results: Results) -> str:
+    """How long each part took."""
+    cells = [
+        f"{name} {number(one['seconds'] / 60.0, 2)} ({one['size']})" for name, one in results["parts"].items()
+    ]
+    return f"Minutes that the parts took when the figures here were measured: {', '.join(cells)}."
+
+
+BLOCKS: dict[str, Callable[[Results], str]] = {
+    "choices": _choices,
+    "sizes": _sizes,
+    "times": _times,
+    "verdicts": _verdicts,
+}
+
+
+def _lines(table: Table) -> str:
     lines = [table.columns, ["---"] * len(table.columns), *table.rows]
-    machine = results["machine"]
-    scenes = dict.fromkeys(row["scene"] for row in _drawn(results))
-    note = (
-        f"Of the scenes {', '.join(scenes)}, on {machine['cores']} cores of an {machine['processor']} with"
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _origin(results: Results, part: str) -> str:
+    """What a part was measured with."""
+    one = results["parts"][part]
+    machine = one["machine"]
+    return (
+        f"Of the {one['size']} report, on {machine['cores']} cores of an {machine['processor']} with"
         f" {machine['driver']}; commit {str(machine['commit'])[:8]}."
     )
-    shown = "\n".join(f"| {' | '.join(line)} |" for line in lines) + f"\n\n{note}"
-    return MARKED.sub(lambda found: f"{found[1]}{shown}\n{found[2]}", text)
 
 
-def _drawn(results: Mapping[str, Any]) -> list[dict[str, Any]]:
-    return [row for row in results["records"] if row["part"] == "error_over_time" and "frame" in row]
+def _rows(results: Results, part: str) -> list[Row]:
+    return [row for row in results["records"] if row["part"] == part]
+
+
+def _drawn(results: Results) -> list[Row]:
+    return [row for row in _rows(results, "error_over_time") if "frame" in row]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import statistics
 from typing import TYPE_CHECKING
 
@@ -43,7 +44,7 @@ def rows(context: Context) -> list[Row]:
         except DecalError as error:
             found.append({"scene": name, "refused": str(error)})
             continue
-        found += _of_scene(context, drawn)
+        found += context.kept(f"error_over_time_{name}", functools.partial(_of_scene, context, drawn))
     return found
 
 

@@ -200,11 +200,18 @@ def _miter(value: float) -> Case:
 
 
 def _width_ratio(value: float) -> Case:
+    """A winding line whose middle, all of it up to a thousand segments, is of segments so short."""
     width = 10.0
     count = max(2, round(120.0 * value / width))
-    t = np.linspace(0.0, 1.0, count + 1)
+    short = min(count, 1000)
+    t = 0.5 + (np.arange(short + 1) - short / 2.0) / count
+    t = (
+        np.concatenate([np.linspace(0.0, t[0], 20)[:-1], t, np.linspace(t[-1], 1.0, 20)[1:]])
+        if short < count
+        else t
+    )
     generator = np.random.default_rng(3)
-    shaken = 0.2 * width / value * generator.uniform(-1.0, 1.0, (count + 1, 2))
+    shaken = 0.2 * width / value * generator.uniform(-1.0, 1.0, (len(t), 2))
     path = np.stack([120.0 * t - 60.0, 25.0 * np.sin(9.0 * t)], axis=1) + np.minimum(shaken, 3.0)
     camera, pixel = _seen(90.0, 150.0)
     return Case(_ground(100.0, 8.0), camera, pixel, lines=[[path]], width=width)

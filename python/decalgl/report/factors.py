@@ -67,6 +67,7 @@ def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]
     for value, case in cases.items():
         measures.append(drawing(renderers[value], case.camera, case.antialias, value))
         measures.append(_preparing(case, value))
+        measures.append(_floor(renderers[value], value))
     times = interleaved(context.runs, *measures)
     for value, case in cases.items():
         held = draw(renderers[value], case.camera, case.antialias).stats.bytes
@@ -77,6 +78,7 @@ def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]
             "memory_bytes": sum(count for name, count in held.items() if name in LAYER_PASSES),
             "render_ms": times[f"{value}_frame_ms"] - times[f"{value}_ground_ms"],
             "update_ms": times[f"{value}_prepare_ms"],
+            "floor_ms": times[f"{value}_floor_ms"],
         }
         for name, source in (("render_ms", f"{value}_frame_ms"), ("update_ms", f"{value}_prepare_ms")):
             if f"{source}_spread" in times:
@@ -100,6 +102,10 @@ def _preparing(case: Case, value: str) -> Measure:
     return lambda: {
         f"{value}_prepare_ms": timed(lambda: dg.Renderer(case.size, **case.renderer).preprocess(case.scene))
     }
+
+
+def _floor(renderer: dg.Renderer, value: str) -> Measure:
+    return lambda: {f"{value}_floor_ms": renderer.time_floor()}
 
 
 def figures(rows: Sequence[Row]) -> list[Figure]:

@@ -10,7 +10,9 @@ was measured; numbers that end in _ms are times, medians of interleaved rounds w
 
 from __future__ import annotations
 
+import json
 import math
+import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
@@ -26,6 +28,7 @@ SIZES: tuple[Size, ...] = ("tiny", "quick", "full")
 Step: TypeAlias = Literal["tiny", "offline", "small", "medium", "large"]
 STEPS: dict[Size, Step] = {"tiny": "tiny", "quick": "offline", "full": "small"}
 PICTURES = "pictures"
+ROWS = "rows"
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,8 @@ class Context:
         reference.
     runs: rounds of which medians are taken.
     say: tells the user what is going on.
+    resume: whether what an earlier run into the same folder measured is taken as it is.
+    seconds: how long what is kept took, by name. spared: those of what was resumed.
     """
 
     size: Size
@@ -50,20 +55,46 @@ class Context:
     runs: int
     step: Step = "offline"
     say: Callable[[str], None] = print
+    resume: bool = False
+    seconds: dict[str, float] = field(default_factory=dict)
+    spared: list[float] = field(default_factory=list)
 
     def chosen(self, tiny: Any, quick: Any, full: Any) -> Any:
         """What fits the size of the report."""
         return {"tiny": tiny, "quick": quick, "full": full}[self.size]
 
+    def kept(self, name: str, measure: Callable[[], list[Row]]) -> list[Row]:
+        """The rows that measuring gives, stored at once, so that a run that breaks off can be resumed.
+
+        name: of what is measured; `seconds` then says how long it took, runs that broke off included.
+        """
+        path = self.out / ROWS / f"{self.size}_{self.step}_{_file_name(name)}.json"
+        if self.resume and path.is_file():
+            self.say(f"{name}: as measured before")
+            stored = json.loads(path.read_text())
+            self.seconds[name] = stored["seconds"]
+            self.spared.append(stored["seconds"])
+            return list(stored["rows"])
+        started, spared = time.monotonic(), len(self.spared)
+        rows = measure()
+        self.seconds[name] = time.monotonic() - started + sum(self.spared[spared:])
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps({"seconds": self.seconds[name], "rows": rows}))
+        return rows
+
     def save_picture(self, name: str, image: NDArray[Any]) -> str:
         """Writes pixels (h, w, 3 or 4) of bytes as a PNG; its address relative to the page. name: a few words."""
         from PIL import Image
 
-        words = "".join(letter if letter.isascii() and letter.isalnum() else " " for letter in name.lower())
-        path = self.out / PICTURES / f"{'_'.join(words.split())}.png"
+        path = self.out / PICTURES / f"{_file_name(name)}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
         Image.fromarray(image).convert("RGB").save(path, optimize=self.size != "tiny")
         return f"{PICTURES}/{path.name}"
+
+
+def _file_name(name: str) -> str:
+    words = "".join(letter if letter.isascii() and letter.isalnum() else " " for letter in name.lower())
+    return "_".join(words.split())
 
 
 @dataclass(frozen=True)

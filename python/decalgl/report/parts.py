@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import error_over_time, factors, needless, papers, scaling, scenes, stability
+from . import error_over_time, factors, needless, papers, scaling, scenes, sizes, stability
 
 if TYPE_CHECKING:
     from .part import Part
 
 PARTS: dict[str, Part] = {
     "scenes": scenes,
+    "sizes": sizes,
     "error_over_time": error_over_time,
     "factors": factors,
     "papers": papers,

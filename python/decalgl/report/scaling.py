@@ -17,7 +17,7 @@ from . import plots
 from .part import Figure, Table, byte_count, number
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from ..bench.measure import Measure, Times
     from .part import Context, Row
@@ -33,6 +33,7 @@ GROUND_PASSES = ("upload", "terrain", "compose", "readback")
 LINE = 100  # segments
 STEP = 40.0  # metres
 HALF = 10_000.0
+MOST_REPEATED = 5e6  # of a count: what is larger is drawn in one round
 UNKNOWN_SPREAD = 0.1  # of times of one round, as a share
 
 
@@ -64,13 +65,11 @@ WAYS = {
 
 def rows(context: Context) -> list[Row]:
     """A row for each count of each sweep and technique. Raises DecalError."""
-    return [
-        *_over_segments(context),
-        *_over_pixels(context),
-        *_over_layers(context),
-        *_over_overlap(context),
-        *_over_threads(context),
-    ]
+    sweeps = (_over_segments, _over_pixels, _over_layers, _over_overlap, _over_threads)
+    found: list[Row] = []
+    for sweep in sweeps:
+        found += context.kept(f"scaling{sweep.__name__}", functools.partial(sweep, context))
+    return found
 
 
 # Sweeps
@@ -82,15 +81,18 @@ def _ways(context: Context, segments: float) -> dict[str, Way]:
     return {name: way for name, way in WAYS.items() if segments <= way.most[place]}
 
 
-def _over_segments(context: Context) -> Iterable[Row]:
+def _over_segments(context: Context) -> list[Row]:
+    found: list[Row] = []
     for count in context.chosen([1e3, 1e4], [1e4, 1e5, 1e6], [1e4, 1e5, 1e6, 1e7, 3e7]):
         context.say(f"scaling: {count:g} segments")
         ways = _ways(context, count)
         scenes = {name: _lines_scene(way, round(count)) for name, way in ways.items()}
-        yield from _measured(context, "segments", count, scenes, ways, context.picture)
+        found += _measured(context, "segments", count, scenes, ways, context.picture)
+    return found
 
 
-def _over_pixels(context: Context) -> Iterable[Row]:
+def _over_pixels(context: Context) -> list[Row]:
+    found: list[Row] = []
     ways = _ways(context, 10_000)
     scenes = {name: _lines_scene(way, 10_000) for name, way in ways.items()}
     sizes = context.chosen(
@@ -100,42 +102,43 @@ def _over_pixels(context: Context) -> Iterable[Row]:
     )
     for size in sizes:
         context.say(f"scaling: {size[0]} x {size[1]} pixels")
-        yield from _measured(context, "pixels", size[0] * size[1], scenes, ways, size)
+        found += _measured(context, "pixels", size[0] * size[1], scenes, ways, size)
+    return found
 
 
-def _over_layers(context: Context) -> Iterable[Row]:
+def _over_layers(context: Context) -> list[Row]:
+    found: list[Row] = []
     several = ("static", "static bvh", "loops")  # layers in one index, or one after the other
     ways = {name: way for name, way in _ways(context, 20_000).items() if name in several}
     for count in context.chosen([1, 4], [1, 16], [1, 4, 16, 64, 256]):
         context.say(f"scaling: {count} layers")
         scenes = {name: _lines_scene(way, 20_000, count) for name, way in ways.items()}
-        yield from _measured(context, "layers", count, scenes, ways, context.picture)
+        found += _measured(context, "layers", count, scenes, ways, context.picture)
+    return found
 
 
-def _over_overlap(context: Context) -> Iterable[Row]:
+def _over_overlap(context: Context) -> list[Row]:
+    found: list[Row] = []
     ways = {name: way for name, way in _ways(context, 1).items() if way.fills}
     for count in context.chosen([1, 10], [1, 30], [1, 10, 100, 1000]):
         context.say(f"scaling: {count} polygons over one another")
         scenes = {name: _stack_scene(way, count) for name, way in ways.items()}
-        yield from _measured(context, "overlap", count, scenes, ways, context.picture)
+        found += _measured(context, "overlap", count, scenes, ways, context.picture)
+    return found
 
 
-def _over_threads(context: Context) -> Iterable[Row]:
+def _over_threads(context: Context) -> list[Row]:
     cores = len(os.sched_getaffinity(0))
     counts = [2**power for power in range(cores.bit_length()) if 2**power <= cores]
     scene = _lines_scene(WAYS["static"], context.chosen(10_000, 500_000, 5_000_000))
     context.say(f"scaling: up to {cores} threads")
     measures: list[Measure] = [_preparing(scene, threads) for threads in counts]
     times = measure.interleaved(context.runs, *measures)
-    for threads in counts:
-        own = _own(times, f"{threads}")
-        yield {
-            "scene": f"threads {threads}",
-            "sweep": "threads",
-            "technique": "static",
-            "count": threads,
-            **own,
-        }
+    words = {"sweep": "threads", "technique": "static"}
+    return [
+        {"scene": f"threads {threads}", **words, "count": threads, **_own(times, f"{threads}")}
+        for threads in counts
+    ]
 
 
 def _preparing(scene: dg.Scene, threads: int) -> Measure:
@@ -153,7 +156,7 @@ def _measured(
     scenes: Mapping[str, dg.Scene],
     ways: Mapping[str, Way],
     size: tuple[int, int],
-) -> Iterable[Row]:
+) -> list[Row]:
     """A row for each scene: its preparing, measured once, and its drawing in turns with that of the others."""
     found: dict[str, Row] = {}
     measures: list[Measure] = []
@@ -170,9 +173,9 @@ def _measured(
             continue
         row["held_bytes"] = sum(n for owner, n in stats.bytes.items() if owner not in ("terrain", "frame"))
         measures += [_drawing(renderer, name), _floor(renderer, name)]
-    times = measure.interleaved(context.runs, *measures) if measures else {}
-    for name, row in found.items():
-        yield {**row, **_own(times, name)}
+    runs = context.runs if count <= MOST_REPEATED else 1
+    times = measure.interleaved(runs, *measures) if measures else {}
+    return [{**row, **_own(times, name)} for name, row in found.items()]
 
 
 def _drawing(renderer: dg.Renderer, name: str) -> Measure:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import statistics
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from ..bench import cameras
 from ..bench.measure import drawing, timed
 from ..errors import DecalError
 from . import plots, views
-from .case_studies import CASE_STUDIES, SCENES, build
+from .case_studies import CASE_STUDIES, SCENES, build, vertices
 from .part import Figure, Table, byte_count, number
 
 if TYPE_CHECKING:
@@ -59,23 +60,25 @@ def rows(context: Context) -> list[Row]:
         except DecalError as error:
             found.append({**words, "refused": str(error)})
             continue
-        found.append({**words, **_counts(context, drawn)})
-        found += _paths(context, drawn)
+        measured = functools.partial(_measured, context, drawn, words)
+        found += context.kept(f"scenes_{name}", measured)
     return found
+
+
+def _measured(context: Context, drawn: Map, words: Row) -> list[Row]:
+    return [{**words, **_counts(context, drawn)}, *_paths(context, drawn)]
 
 
 def _counts(context: Context, drawn: Map) -> Row:
     """Rings, lines and vertices as the thesis counts them: outlines are lines too."""
     scene = drawn.scene()
-    exterior = interior = lines = vertices = groups = draws = colors = 0
+    exterior = interior = lines = groups = draws = colors = 0
     for layer in scene.layers:
         rings = len(layer.features.part_offsets) - 1
-        points = len(layer.features.coords)
         outlined = layer.kind == "polygons" and layer.stroke is not None
         groups += 1
         draws += 1 + outlined
         colors += len(np.unique(layer.colors, axis=0))
-        vertices += points * (2 if outlined else 1)
         if layer.kind == "polygons":
             exterior += len(layer.features)
             interior += rings - len(layer.features)
@@ -90,7 +93,7 @@ def _counts(context: Context, drawn: Map) -> Row:
         "exterior": exterior,
         "interior": interior,
         "lines": lines,
-        "vertices": vertices,
+        "vertices": vertices(scene),
         "groups": groups,
         "draw_calls": draws,
         "colors": colors,
@@ -120,9 +123,10 @@ def _paths(context: Context, drawn: Map) -> list[Row]:
         renderer = dg.Renderer(size, **options.get("renderer", {}))
         renderer.preprocess(drawn.scene("auto", options.get("lines", "auto"), options.get("pixels", False)))
         for path, along in paths.items():
-            rounds = [
-                [_step(renderer, camera) for camera in along] for _ in range(1 + context.chosen(1, 1, 3))
-            ]
+            rounds, floors = [], []
+            for _ in range(1 + context.chosen(1, 1, 3)):
+                rounds.append([_step(renderer, camera) for camera in along])
+                floors.append(renderer.time_floor())
             times = [statistics.median(step) for step in zip(*rounds[1:], strict=True)]
             found.append(
                 {
@@ -132,6 +136,7 @@ def _paths(context: Context, drawn: Map) -> list[Row]:
                     "steps": times,
                     "middle_ms": statistics.median(times),
                     "longest_ms": max(times),
+                    "floor_ms": statistics.median(floors[1:]),
                 }
             )
     return found

@@ -6,6 +6,7 @@ pixel, which is rounding, or within a whole one, which is blur, simplification o
 
 from __future__ import annotations
 
+import functools
 import warnings
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,7 @@ from .extremes import EXTREMES, SIZE
 from .part import Figure, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -45,6 +46,14 @@ EXACT, TOLERABLE, GRACEFUL, WARNS, REFUSES, FAILS = (
 )
 # From the best to the worst; a technique that says what is wrong is better than one that does not.
 VERDICTS = (EXACT, TOLERABLE, GRACEFUL, WARNS, REFUSES, FAILS)
+SHORT = {
+    EXACT: "exact",
+    TOLERABLE: "within",
+    GRACEFUL: "graceful",
+    WARNS: "warns",
+    REFUSES: "refuses",
+    FAILS: "fails",
+}
 LEAST_DRAWN = 1e-5  # where curves of shares meet the axis
 
 TITLE = "Stability"
@@ -127,18 +136,21 @@ def rows(context: Context) -> list[Row]:
     found: list[Row] = []
     for extreme in context.chosen(EXTREMES[:2], EXTREMES, EXTREMES):
         context.say(f"stability: {extreme.title}")
-        found += driven(extreme, context.chosen(extreme.quick[:1], extreme.quick, extreme.values))
+        values = context.chosen(extreme.quick[:1], extreme.quick, extreme.values)
+        found += context.kept(f"stability_{extreme.name}", functools.partial(driven, extreme, values))
     return found
 
 
-def driven(extreme: Extreme, values: Iterable[float]) -> Iterator[Row]:
+def driven(extreme: Extreme, values: Iterable[float]) -> list[Row]:
     """The rows of one extreme."""
+    found: list[Row] = []
     for value in values:
         case = extreme.make(value)
         for name, way in WAYS.items():
             if way.kinds == "both" or case.lines:
                 words = {"scene": f"{extreme.name} {value:g}", "extreme": extreme.name, "technique": name}
-                yield {**words, "value": value, **judged(way, case)}
+                found.append({**words, "value": value, **judged(way, case)})
+    return found
 
 
 def judged(way: Way, case: Case) -> Row:
@@ -201,7 +213,7 @@ def reference_colors(scene: dg.Scene, case: Case, points: FloatArray) -> FloatAr
 
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """The table of verdicts, then curves of each extreme."""
-    return [_verdict_table(rows), _reason_table(rows), *(_curves(rows, one) for one in _driven_in(rows))]
+    return [_verdict_figure(rows), _reason_table(rows), *(_curves(rows, one) for one in _driven_in(rows))]
 
 
 def _driven_in(rows: Sequence[Row]) -> list[Extreme]:
@@ -217,31 +229,43 @@ def _worst(rows: Sequence[Row]) -> Row:
     return max(rows, key=lambda row: VERDICTS.index(row["verdict"]))
 
 
-def _verdict_table(rows: Sequence[Row]) -> Figure:
+def _verdict_figure(rows: Sequence[Row]) -> Figure:
+    return Figure(
+        "Verdicts",
+        "The worst over the values driven through, from the first value on at which it was given, and the worst of the"
+        " other values.",
+        table=verdicts(rows),
+    )
+
+
+def verdicts(rows: Sequence[Row]) -> Table:
+    """What each technique comes to, extreme by extreme."""
     lines = []
     for extreme in _driven_in(rows):
-        cells = [f"{extreme.title} {_range(extreme, rows)}"]
+        cells = [f"{extreme.title}, {_range(extreme, rows)}"]
         for technique in WAYS:
             own = _of(rows, extreme, technique)
             cells.append(_cell(own) if own else "–")
         lines.append(cells)
-    return Figure(
-        "Verdicts",
-        "The worst over the values driven through, and the first value at which it was given where it is not all of"
-        " them.",
-        table=Table(["extreme", *WAYS], lines),
-    )
+    return Table(["extreme", *WAYS], lines)
 
 
 def _cell(own: list[Row]) -> str:
-    verdict = _worst(own)["verdict"]
-    those = [row["value"] for row in own if row["verdict"] == verdict]
-    return verdict if len(those) == len(own) or verdict == EXACT else f"{verdict}: {those[0]:g}"
+    """Such as: exact; at 1e9 refuses."""
+    worst = _worst(own)["verdict"]
+    those = [row for row in own if row["verdict"] == worst]
+    others = [row for row in own if row["verdict"] != worst]
+    if worst == EXACT or not others:
+        return SHORT[worst]
+    values = [f"{row['value']:g}" for row in those]
+    in_a_row = own.index(those[-1]) - own.index(those[0]) == len(those) - 1
+    shown = f"{values[0]} … {values[-1]}" if in_a_row and len(values) > 2 else ", ".join(values)
+    return f"{SHORT[_worst(others)['verdict']]}; at {shown} {SHORT[worst]}"
 
 
 def _range(extreme: Extreme, rows: Sequence[Row]) -> str:
     values = [row["value"] for row in rows if row["extreme"] == extreme.name]
-    return f"({values[0]:g} … {values[-1]:g}{' ' if extreme.unit else ''}{extreme.unit})"
+    return f"{values[0]:g} … {values[-1]:g}{' ' if extreme.unit else ''}{extreme.unit}"
 
 
 def _reason_table(rows: Sequence[Row]) -> Figure:
