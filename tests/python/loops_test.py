@@ -228,7 +228,9 @@ def test_cells_are_made_anew_only_for_what_they_do_not_hold() -> None:
     for technique in ("static", FULL):
         scene = flat_scene()
         rings = [rough_ring(i, 50.0, 50.0, 45.0 - 8.0 * i) for i in range(5)]
-        layer = scene.add_polygons(rings, color=shapes.tints(5, 4), order=[4, 3, 2, 1, 0], technique=technique)
+        layer = scene.add_polygons(
+            rings, color=shapes.tints(5, 4), order=[4, 3, 2, 1, 0], technique=technique
+        )
         drawn = dg.Renderer(size=SIZE, antialias="none")
         drawn.preprocess(scene)
         drawn.update(MAP)

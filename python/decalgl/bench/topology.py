@@ -3,8 +3,8 @@
 crossings   pairs of edges that meet elsewhere than at a common end, beyond those of the input
 openings    edges of an odd number of rings that are not on the map's rim: there, neighbours came apart or overlap
 
-FILE: polygons in any format, or a word: iso-bands for those of San Francisco bay, gshhg for the coasts of the world. The
-counts know nothing of how LOOPS works: crossings are found by shapely, and edges are compared by their coordinates.
+FILE: polygons in any format, or a word: iso-bands for those of San Francisco bay, gshhg for the coasts of the world.
+The counts know nothing of how LOOPS works: crossings are found by shapely, and edges are compared by their coordinates.
 """
 
 from __future__ import annotations
