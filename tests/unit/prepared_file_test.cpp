@@ -4,10 +4,13 @@
 #include <cmath>
 
 #include "decalgl/core/error.h"
+#include "decalgl/technique/loops_options.h"
 #include "error_kind.h"
 #include "forged_archive.h"
 #include "frame/prepared_file.h"
 #include "frame/view_setup.h"
+#include "technique/loops/view_cells.h"
+#include "technique/loops/view_detail.h"
 
 using namespace decalgl;
 using namespace decalgl::test;
@@ -204,6 +207,64 @@ TEST_CASE("forged contents end in an error or in a scene that can be used") {
     }
     CHECK(opened > 50);
     CHECK(refused > 50);
+}
+
+// What a view makes of LOOPS without GL.
+void make_cells(const PreparedScene& scene, const loops::PreparedLoops& prepared) {
+    const Camera camera = Camera::orbit({1070.0, 2930.0, 0.0}, 150.0, 200.0, 30.0);
+    const ViewBlock block = make_view_block(camera, 64, 64, scene.terrain, scene.positions, 100.0);
+    View view;
+    view.width = view.height = 64;
+    view.positions = scene.positions;
+    view.block = &block;
+    const loops::LoopsIndex& index = *prepared.index();
+    const loops::Sight sight(view, index.lattice, index.heights);
+    const loops::ViewDetail detail(prepared.detail(), loops::detail_eye_of(view), sight, index.lattice,
+                                   index.heights);
+    const auto judge = [&](const loops::Activation& activation, size_t arc, bool is_inside) {
+        return detail.judge(activation, double{prepared.slots()->reaches[arc]}, is_inside);
+    };
+    const auto active = loops::active_arcs(index.arcs, index.steps, index.activations, 1, judge);
+    loops::make_cells(index.arcs, active, *prepared.slots(), sight.box(), 1);
+}
+
+TEST_CASE("forged LOOPS end in an error or in an index that can be used") {
+    const ScratchFolder folder;
+    const std::string path = folder.file("forged");
+    std::mt19937 random(6);
+    for (const bool has_bvh : {false, true}) {
+        auto choice = std::make_shared<LoopsChoice>();
+        if (has_bvh) {
+            choice->options.bvh = LoopsBvh();
+            choice->options.bvh->secondary_depths = {2, 2, 2};
+            choice->options.bvh->secondary_branching = {4, 4};
+            choice->options.bvh->node_capacity = 1;
+        }
+        Scene scene = sample_scene();
+        for (Layer& layer : scene.layers)
+            layer.technique = TechniqueChoice{"loops", choice};
+        save_scene(*prepare_scene(scene, on_threads(1), MemoryAccount(), {}), path, 1, {});
+        const Bytes whole = read_file(path);
+        int opened = 0, refused = 0;
+        for (int trial = 0; trial < 300; ++trial) {
+            write_file(path, forge_contents(whole, random));
+            std::shared_ptr<const PreparedScene> forged;
+            try {
+                forged = open_scene(path, 1, MemoryAccount());
+            } catch (const Error& error) {
+                REQUIRE(error.kind() == ErrorKind::file);
+                ++refused;
+                continue;
+            }
+            ++opened;
+            picks(*forged);
+            for (const PreparedPass& pass : forged->passes)
+                if (const auto* prepared = dynamic_cast<const loops::PreparedLoops*>(pass.prepared.get()))
+                    make_cells(*forged, *prepared);
+        }
+        CHECK(opened > 30);
+        CHECK(refused > 30);
+    }
 }
 
 TEST_CASE("what does not fit together is named") {

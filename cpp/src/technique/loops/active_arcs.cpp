@@ -22,4 +22,14 @@ LargeArray<Step> steps_of(const Arcs& arcs, const Refinement& refinement, unsign
     return steps;
 }
 
+LargeArray<Activation> by_steps(const LargeArray<Activation>& activations, const LargeArray<Step>& steps,
+                                unsigned threads) {
+    LargeArray<Activation> ordered(steps.size());
+    parallel_for(steps.size(), 1 << 14, threads, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            ordered[i] = steps[i].size == 0 ? Activation{} : activations[steps[i].point];
+    });
+    return ordered;
+}
+
 }  // namespace decalgl::loops

@@ -5,10 +5,12 @@
 //         s         size: how many there are below s, with s      Where s is not active, all of them are passed
 //        / \                                                      over; else the next step is the first below s.
 //
-// The test must let a splitter's parents through with it.
+// The test must let a splitter's parents through with it. What it has to know lies in the same order as steps, so that it
+// is read from front to back.
 #pragma once
 
 #include "decalgl/core/parallel.h"
+#include "technique/loops/activation.h"
 #include "technique/loops/refinement.h"
 
 namespace decalgl::loops {
@@ -20,6 +22,15 @@ struct Step {
 
 // Of arc a from begin(a) on; the last two of each arc, and those of frames, are unused and 0.
 LargeArray<Step> steps_of(const Arcs& arcs, const Refinement& refinement, unsigned threads);
+// What belongs to points, in the order of steps.
+LargeArray<Activation> by_steps(const LargeArray<Activation>& activations, const LargeArray<Step>& steps,
+                                unsigned threads);
+
+// What a test says of a splitter. Inside: all below it is where the test would only ask for its error.
+struct Verdict {
+    bool is_active;
+    bool is_inside;
+};
 
 struct ActiveArcs {
     std::vector<LatticePoint> points;  // arc after arc
@@ -48,10 +59,10 @@ private:
     std::vector<uint64_t> words_;
 };
 
-// `is_active(point, arc)`; frames have nothing but their ends.
-template <typename IsActive>
-ActiveArcs active_arcs(const KeptArcs& arcs, Span<const Step> steps, unsigned threads,
-                       const IsActive& is_active) {
+// `judge(activation, arc, is_inside)` gives a verdict; frames have nothing but their ends.
+template <typename Judge>
+ActiveArcs active_arcs(const KeptArcs& arcs, Span<const Step> steps, Span<const Activation> activations,
+                       unsigned threads, const Judge& judge) {
     constexpr size_t grain = 256;
     struct Block {
         std::vector<LatticePoint> points;
@@ -68,12 +79,15 @@ ActiveArcs active_arcs(const KeptArcs& arcs, Span<const Step> steps, unsigned th
             active.add(0);
             active.add(size - 1);
             const uint32_t last = arcs.kinds[arc] == ArcKind::frame ? first : first + size - 2;
+            uint32_t inside_end = first;
             for (uint32_t i = first; i < last;) {
+                const Verdict verdict = judge(activations[i], arc, i < inside_end);
                 const Step step = steps[i];
-                const bool goes_on = is_active(step.point, arc);
-                if (goes_on)
+                if (verdict.is_active)
                     active.add(step.point - first);
-                i += goes_on ? 1 : step.size;
+                if (verdict.is_inside && i >= inside_end)
+                    inside_end = i + step.size;
+                i += verdict.is_active ? 1 : step.size;
             }
             active.each([&](size_t i) { block.points.push_back(arcs.points[first + i]); });
             block.sizes.push_back(static_cast<uint32_t>(block.points.size() - before));

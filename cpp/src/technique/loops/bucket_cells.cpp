@@ -146,37 +146,51 @@ void BucketBuilder::put_stroke(const Edge& edge, double half_width, Rows& covere
     const double size = std::ldexp(1.0, cell_bits_), reach = half_width + 1.0;
     const std::array<double, 4> ends = {double(edge.a.x) - corner_.x, double(edge.a.y) - corner_.y,
                                         double(edge.b.x) - corner_.x, double(edge.b.y) - corner_.y};
-    const auto place = [&](double offset) {
-        return static_cast<int>(std::clamp(std::floor(offset / size), 0.0, double(side_ - 1)));
-    };
-    const double slope = ends[2] > ends[0] ? (ends[3] - ends[1]) / (ends[2] - ends[0]) : 0.0;
-    if (ends[2] + reach < 0.0 || ends[0] - reach > size * side_)
+    const double low = std::min(ends[1], ends[3]) - reach, high = std::max(ends[1], ends[3]) + reach;
+    const double whole = size * side_, share = std::ldexp(1.0, -cell_bits_);
+    if (ends[2] + reach < 0.0 || ends[0] - reach > whole || high < 0.0 || low > whole)
         return;
-    for (int column = place(ends[0] - reach); column <= place(ends[2] + reach); ++column) {
-        // Of the segment what may reach the column.
-        const double from = std::clamp(column * size - reach, ends[0], ends[2]);
-        const double to = std::clamp((column + 1) * size + reach, ends[0], ends[2]);
-        const bool is_upright = ends[2] == ends[0];
-        const double y0 = is_upright ? ends[1] : ends[1] + slope * (from - ends[0]);
-        const double y1 = is_upright ? ends[3] : ends[1] + slope * (to - ends[0]);
-        if (std::max(y0, y1) + reach < 0.0 || std::min(y0, y1) - reach > size * side_)
-            continue;
-        for (int row = place(std::min(y0, y1) - reach); row <= place(std::max(y0, y1) + reach); ++row) {
+    const auto place = [&](double offset) {
+        return static_cast<int>(std::clamp(offset * share, 0.0, double(side_ - 1)));
+    };
+    const int first = place(ends[0] - reach), last = place(ends[2] + reach);
+    const int lowest = place(low), highest = place(high);
+    const bool is_small = first == last || lowest == highest || ends[2] == ends[0];
+    const double slope = is_small ? 0.0 : (ends[3] - ends[1]) / (ends[2] - ends[0]);
+    for (int column = first; column <= last; ++column) {
+        int from = lowest, to = highest;
+        if (!is_small) {
+            // Of the segment what may reach the column.
+            const double y0 =
+                ends[1] + slope * (std::clamp(column * size - reach, ends[0], ends[2]) - ends[0]);
+            const double y1 =
+                ends[1] + slope * (std::clamp((column + 1) * size + reach, ends[0], ends[2]) - ends[0]);
+            if (std::max(y0, y1) + reach < 0.0 || std::min(y0, y1) - reach > whole)
+                continue;
+            from = place(std::min(y0, y1) - reach);
+            to = place(std::max(y0, y1) + reach);
+        }
+        for (int row = from; row <= to; ++row) {
             if ((covered[size_t(row)] >> column & 1) != 0)
                 continue;
-            const LatticePoint at = {corner_.x + (column << cell_bits_), corner_.y + (row << cell_bits_)};
-            const int32_t side = 1 << cell_bits_;
-            bool covers = half_width > 1.4 * size;
-            for (int i = 0; covers && i < 4; ++i)
-                covers = distance_to_segment({at.x + (i % 2) * side, at.y + (i / 2) * side}, edge.a, edge.b) <
-                         half_width - 1.0;
-            if (covers)
+            if (half_width > 1.4 * size && covers(column, row, edge, half_width))
                 covered[size_t(row)] |= uint64_t{1} << column;
             else
                 put_edge(column, row,
                          {double(edge.a.x), double(edge.a.y), double(edge.b.x), double(edge.b.y)}, reach);
         }
     }
+}
+
+// Whether a stroke covers all of a cell.
+bool BucketBuilder::covers(int column, int row, const Edge& edge, double half_width) const {
+    const LatticePoint at = {corner_.x + (column << cell_bits_), corner_.y + (row << cell_bits_)};
+    const int32_t side = 1 << cell_bits_;
+    bool all = true;
+    for (int i = 0; all && i < 4; ++i)
+        all = distance_to_segment({at.x + (i % 2) * side, at.y + (i / 2) * side}, edge.a, edge.b) <
+              half_width - 1.0;
+    return all;
 }
 
 // Ends are places on the lattice. Where they are far out of the cell, floats would be too coarse for them.
@@ -192,7 +206,7 @@ void BucketBuilder::put_edge(int column, int row, const std::array<double, 4>& e
                  y = double(corner_.y) + std::ldexp(row, cell_bits_);
     std::array<double, 4> own = {ends[0] - x, ends[1] - y, ends[2] - x, ends[3] - y};
     const auto is_far = [](double value) { return std::abs(value) > exact; };
-    if (std::any_of(own.begin(), own.end(), is_far))
+    if (is_far(own[0]) || is_far(own[1]) || is_far(own[2]) || is_far(own[3]))
         own = part_in(own, -reach - 1.0, std::ldexp(1.0, cell_bits_) + reach + 1.0);
     const auto cell = static_cast<uint32_t>(row * side_ + column);
     items_.push_back({cell, {{bits_of(own[0]), bits_of(own[1]), bits_of(own[2]), bits_of(own[3])}}});

@@ -77,6 +77,7 @@ private:
     void cut_fill(const Edge& edge, Rows& corners);
     void add_stroke(Span<const Edge> edges, double half_width);
     void put_stroke(const Edge& edge, double half_width, Rows& covered);
+    bool covers(int column, int row, const Edge& edge, double half_width) const;
     void put_edge(int column, int row, const std::array<double, 4>& ends, double reach);
     void put_header(int column, int row);
     void close(const Rows& inside);

@@ -156,7 +156,7 @@ Bvh make_bvh(const LoopsOptions& options, const Hierarchy& hierarchy, const Slot
              MemoryCharge& charge, Progress& progress) {
     Bvh bvh;
     bvh.primitives = options.primitives;
-    charge.resize(charge.bytes() + hierarchy.arcs.points.size() * sizeof(Base));
+    charge.resize(charge.bytes() + hierarchy.arcs.points.size() * (sizeof(Base) + sizeof(Activation)));
     std::vector<float> half_widths;
     for (const Style& style : slots.styles)
         half_widths.push_back(style.half_width);
@@ -220,12 +220,15 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
     index->lattice = hierarchy.lattice;
     index->heights = hierarchy.heights;
     index->needs = hierarchy.needs;
-    index->steps = steps_of(hierarchy.arcs, hierarchy.refinement, input.threads);
+    LargeArray<Step> steps = steps_of(hierarchy.arcs, hierarchy.refinement, input.threads);
+    index->activations = by_steps(hierarchy.activations, steps, input.threads);
+    index->steps = std::move(steps);
     auto slots = std::make_shared<Slots>(make_slots(input, decals, hierarchy));
-    if (choice.options.bvh)
+    if (choice.options.bvh) {
         index->bvh = make_bvh(choice.options, hierarchy, *slots, input.threads, index->charge, progress);
+        index->bvh->activations = std::move(hierarchy.activations);
+    }
     index->arcs = kept(std::move(hierarchy.arcs));
-    index->activations = std::move(hierarchy.activations);
     slots->reach_along(*index);
     progress.report(1.0);
     return std::make_unique<PreparedLoops>(std::move(index), std::move(slots), choice.detail);
@@ -233,7 +236,7 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
 
 uint64_t LoopsIndex::bytes() const {
     return arcs.points.size_bytes() + activations.size_bytes() + steps.size_bytes() +
-           (bvh ? bvh->bases.size_bytes() + bvh->words.size_bytes() : 0);
+           (bvh ? bvh->bases.size_bytes() + bvh->activations.size_bytes() + bvh->words.size_bytes() : 0);
 }
 
 PreparedCounts PreparedLoops::counts() const {

@@ -68,7 +68,7 @@ Loops::NamedBuffer Loops::buffer_of(const char* name, GLenum format, const Value
 void Loops::upload_bvh(const LoopsIndex& index) {
     bvh_.push_back(buffer_of("loops_points", GL_RG32I, index.arcs.points));
     bvh_.push_back(buffer_of("loops_bases", GL_RG32UI, index.bvh->bases));
-    bvh_.push_back(buffer_of("loops_activations", GL_RGBA32UI, index.activations));
+    bvh_.push_back(buffer_of("loops_activations", GL_RGBA32UI, index.bvh->activations));
     bvh_.push_back(buffer_of("loops_nodes", GL_R32UI, index.bvh->words));
 }
 
@@ -114,9 +114,10 @@ std::shared_ptr<const Loops::Cells> Loops::cells_of(const View& view, Cells want
     const loops::Slots& slots = *prepared.slots();
     const loops::ViewDetail tolerances(wanted.detail, wanted.eye, wanted.sight, index.lattice, index.heights);
     const loops::ActiveArcs active =
-        loops::active_arcs(index.arcs, index.steps, 0, [&](uint32_t point, size_t arc) {
-            return tolerances.is_active(index.activations[point], double{slots.reaches[arc]});
-        });
+        loops::active_arcs(index.arcs, index.steps, index.activations, 0,
+                           [&](const loops::Activation& activation, size_t arc, bool is_inside) {
+                               return tolerances.judge(activation, double{slots.reaches[arc]}, is_inside);
+                           });
     loops::ViewCells& cells = wanted.cells;
     cells = loops::make_cells(index.arcs, active, slots, wanted.sight.box(), 0);
     wanted.buffers.push_back(buffer_of("bucket_entries", GL_R32UI, cells.lists.buckets));

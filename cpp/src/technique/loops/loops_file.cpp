@@ -138,6 +138,7 @@ Bvh open_bvh(const ArchiveReader& archive, const std::string& prefix, const Loop
     bvh.primitives = static_cast<LinePrimitives>(record.primitives);
     bvh.most_lists = record.most_lists;
     bvh.bases = archive.array<Base>(prefix + "bvh_bases");
+    bvh.activations = archive.array<Activation>(prefix + "bvh_activations");
     bvh.words = archive.array<uint32_t>(prefix + "bvh_words");
     if (record.primitives > static_cast<uint32_t>(LinePrimitives::segments) || bvh.most_lists < 1 ||
         bvh.most_lists > LOOPS_MOST_LISTS ||
@@ -179,6 +180,7 @@ void PreparedLoops::save(ArchiveWriter& archive, const std::string& prefix) cons
                       BvhRecord{index.bvh->counts, index.bvh->items,
                                 static_cast<uint32_t>(index.bvh->primitives), index.bvh->most_lists});
     archive.add(prefix + "bvh_bases", index.bvh->bases.span());
+    archive.add(prefix + "bvh_activations", index.bvh->activations.span());
     archive.add(prefix + "bvh_words", index.bvh->words.span());
 }
 

@@ -35,6 +35,7 @@ static_assert(sizeof(Base) == 8 && sizeof(Style) == 8, "RG32 texels");
 struct Bvh {
     LinePrimitives primitives = LinePrimitives::triangles;
     SharedArray<Base> bases;
+    SharedArray<Activation> activations;  // of each point
     SharedArray<uint32_t> words;
     TreeCounts counts;
     uint32_t most_lists = 1;  // that a position has
@@ -45,8 +46,8 @@ struct LoopsIndex {
     Lattice lattice;
     GroundRange heights;
     KeptArcs arcs;
-    SharedArray<Activation> activations;
     SharedArray<Step> steps;
+    SharedArray<Activation> activations;  // in the order of steps
     std::optional<Bvh> bvh;
     uint32_t first_layer = 0;
     SharedArray<OutlineOrder> outlines;  // of each layer

@@ -22,13 +22,13 @@ public:
     Query(const LoopsIndex& index, const Slots& slots, LatticePoint point)
         : index_(index), slots_(slots), point_(point) {
         // What is left out of an arc lies in a region that does not hold the point, and its base does too.
-        active_ = active_arcs(index.arcs, index.steps, 0, [&](uint32_t p, size_t arc) {
-            const Activation& activation = index.activations[p];
+        const auto judge = [&](const Activation& activation, size_t arc, bool) -> Verdict {
             const double radius =
                 half_to_double(static_cast<uint16_t>(activation.error_and_radius >> 16)) / length_scale;
             const double reach = double{slots.reaches[arc]} / index.lattice.quantum;
-            return distance_between(point, {activation.x, activation.y}) <= radius + reach + 1.0;
-        });
+            return {distance_between(point, {activation.x, activation.y}) <= radius + reach + 1.0, false};
+        };
+        active_ = active_arcs(index.arcs, index.steps, index.activations, 0, judge);
     }
 
     bool is_in(size_t slot) const {

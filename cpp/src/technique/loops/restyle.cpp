@@ -57,12 +57,11 @@ std::shared_ptr<const Prepared> PreparedLoops::restyled(Span<const LayerLook> lo
     LoopsDetail detail = detail_;
     Slots slots = *slots_;
     std::vector<Style> styles(slots.styles.begin(), slots.styles.end());
-    bool has_colors = false, has_widths = false;
+    bool is_recolored = false, is_widened = false;
     for (const LayerLook& look : looks) {
         if (const auto* choice = dynamic_cast<const LoopsChoice*>(look.options.get()))
             detail = choice->detail;
-        const bool is_widened = !look.stroke.widths.empty() || !look.casing.widths.empty();
-        if (index_->bvh && is_widened)
+        if (index_->bvh && has_widths(look))
             refuse("keeps its widths in a bvh; prepare the layer with bvh=None to change them");
         if (index_->bvh && !look.draw_order.empty())
             refuse("keeps its draw order in a bvh; prepare the layer with bvh=None to change it");
@@ -74,14 +73,14 @@ std::shared_ptr<const Prepared> PreparedLoops::restyled(Span<const LayerLook> lo
         if (!look.draw_order.empty())
             slots.upwards = reordered(slots.decals, slots.upwards, look.layer, look.draw_order,
                                       index_->outlines[look.layer - index_->first_layer]);
-        has_widths = has_widths || is_widened;
-        has_colors = has_colors || !look.fill.colors.empty() || !look.stroke.colors.empty() ||
-                     !look.casing.colors.empty();
+        is_widened = is_widened || has_widths(look);
+        is_recolored = is_recolored || !look.fill.colors.empty() || !look.stroke.colors.empty() ||
+                       !look.casing.colors.empty();
     }
     validate(detail);
-    if (has_colors || has_widths)
+    if (is_recolored || is_widened)
         slots.styles = std::move(styles);
-    if (has_widths)
+    if (is_widened)
         slots.reach_along(*index_);
     return std::make_shared<PreparedLoops>(index_, std::make_shared<const Slots>(std::move(slots)), detail);
 }

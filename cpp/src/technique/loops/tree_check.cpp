@@ -107,7 +107,8 @@ bool fits_together(const Bvh& bvh, size_t points, size_t slots, const LatticeBox
     const auto leads_to_points = [&](const Base& base) {
         return (base.left & LOOPS_POINT_MASK) < points && base.right < points;
     };
-    return bvh.bases.size() == points && std::all_of(bvh.bases.begin(), bvh.bases.end(), leads_to_points) &&
+    return bvh.bases.size() == points && bvh.activations.size() == points &&
+           std::all_of(bvh.bases.begin(), bvh.bases.end(), leads_to_points) &&
            TreeCheck(bvh.words, points, slots).holds(box);
 }
 

@@ -171,6 +171,19 @@ private:
         BucketSlot slot;
     };
 
+    // Most slots have few pieces in a column, and no buffer is worth its making.
+    static void sort_by_rows(std::vector<Piece>& pieces) {
+        constexpr size_t few = 32;
+        const auto lies_below = [](const Piece& a, const Piece& b) { return a.row < b.row; };
+        if (pieces.size() > few) {
+            std::stable_sort(pieces.begin(), pieces.end(), lies_below);
+            return;
+        }
+        for (size_t i = 1; i < pieces.size(); ++i)
+            for (size_t k = i; k > 0 && lies_below(pieces[k], pieces[k - 1]); --k)
+                std::swap(pieces[k], pieces[k - 1]);
+    }
+
     void add_slot(Span<const Reference> references) {
         const Style& style = slots_.styles[references[0].slot];
         const bool is_fill = style.is_fill();
@@ -184,8 +197,7 @@ private:
             else
                 place_stroke(reference.edge, reach_of(style));
         // Edges of a bucket next to each other, and the corners that are inside.
-        std::stable_sort(own_.begin(), own_.end(),
-                         [](const Piece& a, const Piece& b) { return a.row < b.row; });
+        sort_by_rows(own_);
         if (!own_.empty()) {
             first_row_ = std::min(first_row_, own_.front().row);
             last_row_ = std::max(last_row_, own_.back().row);
@@ -257,6 +269,12 @@ private:
     }
 
     void place_stroke(const Edge& edge, int64_t reach) {
+        const int64_t lowest = grid_.row_of(std::min(edge.a.y, edge.b.y) - reach - 1);
+        if (lowest == grid_.row_of(std::max(edge.a.y, edge.b.y) + reach + 1)) {
+            if (lowest >= 0 && lowest < grid_.rows)
+                own_.push_back({static_cast<int>(lowest), edge});
+            return;
+        }
         // What of it may reach the column.
         const double from = std::clamp(double(left_ - reach), double(edge.a.x), double(edge.b.x));
         const double to = std::clamp(double(left_ + (int64_t{1} << grid_.bits) + reach), double(edge.a.x),
@@ -275,16 +293,22 @@ private:
     }
 
     void write(CellLists& lists) {
-        std::stable_sort(entries_.begin(), entries_.end(),
-                         [](const Entry& a, const Entry& b) { return a.row < b.row; });
+        // Entries of a bucket next to each other, in their order.
+        std::vector<uint32_t> ends(size_t(grid_.rows) + 1, 0);
+        for (const Entry& entry : entries_)
+            ++ends[size_t(entry.row) + 1];
+        for (size_t row = 1; row < ends.size(); ++row)
+            ends[row] += ends[row - 1];
+        std::vector<BucketSlot> slots(entries_.size());
+        for (const Entry& entry : entries_)
+            slots[ends[size_t(entry.row)]++] = entry.slot;
         BucketBuilder builder(grid_.bits, slots_.styles, lists);
-        std::vector<BucketSlot> slots;
-        size_t next = 0;
+        uint32_t begin = 0;
         for (int row = 0; row < grid_.rows; ++row) {
-            slots.clear();
-            for (; next < entries_.size() && entries_[next].row == row; ++next)
-                slots.push_back(entries_[next].slot);
-            builder.add({left_, grid_.bottom_of(row)}, slots, pieces_);
+            const uint32_t end = ends[size_t(row)];
+            builder.add({left_, grid_.bottom_of(row)},
+                        Span<const BucketSlot>(slots).subspan(begin, end - begin), pieces_);
+            begin = end;
         }
     }
 

@@ -142,7 +142,7 @@ ViewDetail::ViewDetail(const LoopsDetail& detail, const DetailEye& eye, const Si
     detail_.lens_centre[1] -= lattice.bottom;
 }
 
-bool ViewDetail::is_active(const Activation& activation, double reach) const {
+Verdict ViewDetail::judge(const Activation& activation, double reach, bool is_inside) const {
     const double x = quantum_ * activation.x, y = quantum_ * activation.y;
     const double radius = length_ * half_to_double(static_cast<uint16_t>(activation.error_and_radius >> 16));
     const double error = length_ * half_to_double(static_cast<uint16_t>(activation.error_and_radius));
@@ -150,13 +150,19 @@ bool ViewDetail::is_active(const Activation& activation, double reach) const {
     const double high = lowest_ + height_step_ * (activation.lowest_and_highest >> 16);
     // Most are too small, and only what is not is looked for in the picture.
     if (!(error > tolerance(x, y, radius, low, high)))
-        return false;
-    for (const SightPlane& plane : sight_.planes())
-        if (plane.normal[0] * x + plane.normal[1] * y + plane.on_map * (radius + reach) +
-                std::max(plane.normal[2] * low, plane.normal[2] * high) + plane.offset <
-            0.0)
-            return false;
-    return true;
+        return {false, false};
+    if (is_inside)
+        return {true, true};
+    is_inside = true;
+    for (const SightPlane& plane : sight_.planes()) {
+        const double middle = plane.normal[0] * x + plane.normal[1] * y + plane.offset;
+        const double beside = plane.on_map * (radius + reach);
+        const double below = plane.normal[2] * low, above = plane.normal[2] * high;
+        if (middle + beside + std::max(below, above) < 0.0)
+            return {false, false};
+        is_inside = is_inside && middle - beside + std::min(below, above) >= 0.0;
+    }
+    return {true, is_inside};
 }
 
 double ViewDetail::tolerance(double x, double y, double radius, double low, double high) const {

@@ -11,7 +11,7 @@
 
 #include "decalgl/technique/loops_detail.h"
 #include "decalgl/technique/technique.h"
-#include "technique/loops/activation.h"
+#include "technique/loops/active_arcs.h"
 
 namespace decalgl::loops {
 
@@ -51,8 +51,8 @@ public:
     ViewDetail(const LoopsDetail& detail, const DetailEye& eye, const Sight& sight, const Lattice& lattice,
                const GroundRange& heights);
 
-    // `reach`: how far what is drawn reaches beyond its vertices, metres.
-    bool is_active(const Activation& activation, double reach) const;
+    // `reach`: how far what is drawn reaches beyond its vertices, metres. `is_inside`: as all above is in the picture.
+    Verdict judge(const Activation& activation, double reach, bool is_inside) const;
 
 private:
     double tolerance(double x, double y, double radius, double low, double high) const;
