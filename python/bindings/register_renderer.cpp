@@ -253,7 +253,8 @@ void register_renderer(py::module_& module) {
             },
             py::arg("sky_low"), py::arg("sky_high"))
         .def("forget", &Renderer::forget)
-        .def("time_floor", &Renderer::time_floor);
+        .def("time_floor", &Renderer::time_floor)
+        .def("count_fragments", &Renderer::count_fragments);
 
     module.def(
         "describe_saved_scene",

@@ -130,12 +130,12 @@ void register_scene(py::module_& module) {
     py::class_<TechniqueOptions, std::shared_ptr<TechniqueOptions>>(module, "TechniqueOptions");
     py::class_<clipmap::ClipmapOptions, TechniqueOptions, std::shared_ptr<clipmap::ClipmapOptions>>(
         module, "ClipmapOptions")
-        .def(py::init([](int solution, bool inner_meets, double bevel_below, double thin_below,
-                         double widest_line, double widen_from, double widen_to, int window, int samples,
-                         int anisotropy, int tiles_a_frame) {
+        .def(py::init([](int solution, int joints, double bevel_below, double thin_below, double widest_line,
+                         double widen_from, double widen_to, int window, int samples, int anisotropy,
+                         int tiles_a_frame) {
                  clipmap::ClipmapOptions options;
                  options.solution = static_cast<clipmap::LineSolution>(solution);
-                 options.inner_meets = inner_meets;
+                 options.joints = static_cast<clipmap::JointMethod>(joints);
                  options.bevel_below = bevel_below;
                  options.thin_below = thin_below;
                  options.widest_line = widest_line;
@@ -147,7 +147,7 @@ void register_scene(py::module_& module) {
                  options.tiles_a_frame = tiles_a_frame;
                  return options;
              }),
-             py::arg("solution"), py::arg("inner_meets"), py::arg("bevel_below"), py::arg("thin_below"),
+             py::arg("solution"), py::arg("joints"), py::arg("bevel_below"), py::arg("thin_below"),
              py::arg("widest_line"), py::arg("widen_from"), py::arg("widen_to"), py::arg("window"),
              py::arg("samples"), py::arg("anisotropy"), py::arg("tiles_a_frame"));
     py::class_<volume::VolumeOptions, TechniqueOptions, std::shared_ptr<volume::VolumeOptions>>(

@@ -14,6 +14,7 @@ from ._sources import Attributes
 from .coloring import resolve_colors
 from .errors import InputError, StyleError, UnsupportedError
 from .features import FeatureTable, read_features
+from .frame import KEEP_THE_DATA
 from .scene import Layer
 
 if TYPE_CHECKING:
@@ -45,8 +46,7 @@ def edited(
     name = state.layer.name
     if not isinstance(state.layer, Layer):
         raise UnsupportedError(
-            f"Layer {name!r} comes from a saved scene, which keeps no vertices to edit. Prepare the scene from"
-            " its data."
+            f"Layer {name!r} comes from a saved scene, which keeps no vertices to edit. {KEEP_THE_DATA}"
         )
     given = {key: value for key, value in style.items() if value is not None}
     require_known(given, ADD_KEYWORDS, name)

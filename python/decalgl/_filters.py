@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .errors import DecalError, InputError
+from .frame import KEEP_THE_DATA
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -50,8 +51,8 @@ class Columns:
         """The column, one value a row. Raises ColumnError, which names close matches."""
         if self._attributes is None:
             raise InputError(
-                f"Layer {self._layer_name!r} comes from a saved scene, which keeps no columns. Give one value"
-                " for each row, or prepare the scene from its data."
+                f"Layer {self._layer_name!r} comes from a saved scene, which keeps no columns. {KEEP_THE_DATA}"
+                " Or give one value for each row."
             )
         return self._attributes.column(name)
 

@@ -20,6 +20,7 @@ from ._filters import Columns, rows_meant
 from ._style_changes import FILL_STYLES, STROKE_STYLES, Styles, changed_hatches, changed_strokes
 from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, UnsupportedError, close_matches
+from .frame import KEEP_THE_DATA
 from .scene import Layer, draw_order_by
 from .techniques import Technique
 
@@ -340,8 +341,8 @@ def _styles(
 ) -> Styles:
     if not isinstance(state.layer, Layer) or state.attributes is None or decal.styles is None:
         raise UnsupportedError(
-            f"Layer {state.layer.name!r} comes from a saved scene, which keeps no styles to change. Prepare the"
-            " scene from its data."
+            f"Layer {state.layer.name!r} comes from a saved scene, which keeps no styles to change."
+            f" {KEEP_THE_DATA}"
         )
     if state.layer.technique.name != "static":
         raise StyleError(
@@ -477,8 +478,8 @@ def _draw_order(state: LayerState, order: Any) -> NDArray[np.int64]:
         if order == "feature":
             return np.arange(len(state.rows), dtype=np.int64)
         raise InputError(
-            f"Layer {state.layer.name!r} comes from a saved scene, which keeps no columns. Give one number a"
-            " row, or prepare the scene from its data."
+            f"Layer {state.layer.name!r} comes from a saved scene, which keeps no columns. {KEEP_THE_DATA} Or"
+            " give one number a row."
         )
     keys = np.asarray(order, dtype=np.float64)
     if keys.shape != (state.row_count,):

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from .layer import Layer
 
 Solution = Literal["1", "2", "3a", "3b", "4a", "4b", "4b polar"]
+JOINTS = ("1", "3a", "3b")
 SOLUTIONS = ("1", "2", "3a", "3b", "4a", "4b", "4b polar")
 RANGES: dict[str, tuple[float, float]] = {
     "bevel_below": (10.0, 180.0),
@@ -41,7 +42,8 @@ class Clipmap(Technique):
     solution: how lines get into tiles, by the paper's numbers: "1" line primitives, "2" tessellated before, "3a" both,
         "3b" tessellated, and wireframe where thin, "4a" by a geometry shader, "4b" by offsets worked out before, in
         rectangular or in "4b polar" coordinates.
-    joints: of angles below `bevel_below` degrees, "3b" (inner borders meet, so nothing is drawn twice) or "3a".
+    joints: of angles below `bevel_below` degrees, "3b" (inner borders meet, so nothing is drawn twice) or "3a"; or "1",
+        none at any angle: segments end across, which leaves notches.
     thin_below: texels; thinner lines are line primitives, but for solutions 1 and 2.
     widest_line: texels to which line primitives are clamped.
     widen: (near, far), metres from the camera to the ground: from `near` on widths grow as the distance does, and from
@@ -59,7 +61,7 @@ class Clipmap(Technique):
     name = "clipmap"
     needs_triangles = True
     solution: Solution = "4b"
-    joints: Literal["3a", "3b"] = "3b"
+    joints: Literal["1", "3a", "3b"] = "3b"
     bevel_below: float = 90.0
     thin_below: float = 1.5
     widest_line: float = 10.0
@@ -70,7 +72,7 @@ class Clipmap(Technique):
     tiles_a_frame: int | None = None
 
     def __post_init__(self) -> None:
-        for name, known in (("solution", SOLUTIONS), ("joints", ("3a", "3b"))):
+        for name, known in (("solution", SOLUTIONS), ("joints", JOINTS)):
             value = getattr(self, name)
             if value not in known:
                 raise StyleError(
@@ -117,7 +119,7 @@ class Clipmap(Technique):
         """As the core takes them."""
         return _core.ClipmapOptions(
             solution=SOLUTIONS.index(self.solution),
-            inner_meets=self.joints == "3b",
+            joints=JOINTS.index(self.joints),
             bevel_below=float(self.bevel_below),
             thin_below=float(self.thin_below),
             widest_line=float(self.widest_line),

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 # While they are made, the surface takes 60 bytes a pixel and the ids 16 and 4 more a technique.
 BYTES_PER_PIXEL = 64
 KEEP_ALPHA = ("PNG", "WEBP", "TIFF")
+KEEP_THE_DATA = "Open it by preprocess(scene, cache=path), which keeps the scene's data beside it."
 LARGE_PICTURE = 1 << 22  # pixels; a smaller picture is not worth asking how much memory there is
 
 
@@ -203,8 +204,8 @@ class Frame:
             picture = Image.alpha_composite(picture, Image.fromarray(overlay(explained, self.size)))
         elif legend:
             raise StyleError(
-                "There is no legend to draw. Add layers with legend=True; a scene that was opened from a file has"
-                " none, so preprocess the scene itself."
+                "There is no legend to draw. Add layers with legend=True. A scene that was opened from a file has no"
+                f" legends. {KEEP_THE_DATA}"
             )
         if file_format not in KEEP_ALPHA:
             white = Image.new("RGBA", picture.size, "white")

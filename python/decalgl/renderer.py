@@ -324,6 +324,12 @@ class Renderer:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""
         return self._core.time_floor()
 
+    def count_fragments(self) -> int:
+        """Samples that the layers' passes write for the view in hand, which are drawn for it once more: what is drawn
+        ahead for a view, such as tiles of textures, counts where it is not there yet.
+        """
+        return self._core.count_fragments()
+
 
 def _warn_of_rounding(counts: Mapping[str, float]) -> None:
     if counts["quantum_px"] > MOST_ROUNDED:

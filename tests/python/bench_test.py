@@ -12,7 +12,7 @@ import shapely
 
 import decalgl as dg
 from decalgl import cli
-from decalgl.bench import command, comparison, goals, shapes, tables, terminal, workload
+from decalgl.bench import artefacts, command, comparison, goals, shapes, tables, terminal, workload
 from decalgl.bench.measure import interleaved
 from decalgl.bench.suites import SUITES
 from decalgl.errors import InputError
@@ -161,3 +161,25 @@ def test_the_command_compares_two_files(tmp_path: Path, capfd: pytest.CaptureFix
     for wrong in (other, tmp_path / "absent.json"):
         assert cli.run(["bench", "--compare", str(before), str(wrong)]) == 2
         assert capfd.readouterr().err.startswith("error: ")
+
+
+def test_overdraw_is_what_faces_write() -> None:
+    """A hull seen from above: its lid lies before the ground, its bottom behind, and walls stand on edge."""
+
+    def scene_of(technique: dg.Technique) -> dg.Scene:
+        scene = dg.Scene(dg.Terrain.flat((0.0, 0.0, 100.0, 100.0)))
+        scene.add_polygons([shapely.box(20, 20, 80, 80)], technique=technique)
+        return scene
+
+    camera = dg.Camera.top_down((0.0, 0.0, 100.0, 100.0))
+    volume = artefacts.overdraw(scene_of, dg.Volume(), camera, (100, 100))
+    assert volume == pytest.approx(2.0, abs=0.1)  # the bottom, and the mask
+    assert artefacts.overdraw(scene_of, dg.Static(), camera, (100, 100)) == pytest.approx(0.0, abs=0.1)
+
+
+def test_artefacts_are_there_and_mended() -> None:
+    assert artefacts.intrusion() == 1.0
+    assert artefacts.intrusion(mend_intrusion=True, widths_at="vertex") == 0.0
+    assert artefacts.protrusion() == pytest.approx(15.0, abs=1.0)
+    assert artefacts.protrusion(mend_protrusion=True) == 0.0
+    assert 0.1 < artefacts.steps() <= 0.5

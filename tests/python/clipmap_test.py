@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,8 @@ import decalgl as dg
 import judge
 import scenes
 from decalgl import reference as ref
+from decalgl.report import stability
+from decalgl.report.extremes import EXTREMES
 from scenes import View
 from shapes import drawn_by
 from small_scenes import MAP, SIZE, draw, flat_scene, pixel
@@ -43,6 +46,13 @@ def zigzag(technique: dg.Technique, width: float, alpha: float = 1.0) -> dg.Scen
 
 
 # Against the reference
+
+
+@pytest.mark.parametrize(("name", "value"), [("line width", 100.0), ("sliver", 1e5)])
+def test_lines_wider_than_segments_and_long_slivers_are_right(name: str, value: float) -> None:
+    """Segments of a thirtieth of the width, at joints whose inner borders do not meet; triangles 500 times the map."""
+    (extreme,) = (one for one in EXTREMES if one.name == name)
+    assert stability.judged(stability.WAYS["clipmap"], extreme.make(value))["far"] <= stability.MOST_ROUGH
 
 
 @pytest.mark.parametrize(
@@ -113,6 +123,19 @@ def test_thin_lines_are_as_dark_and_as_even_as_the_solution_allows(name: str) ->
     static, thin = darkness
     assert dark[0] < thin.mean() / static.mean() < dark[1]
     assert uneven[0] <= thin.std() / thin.mean() < uneven[1]
+
+
+@pytest.mark.parametrize("solution", ["2", "4a", "4b", "4b polar"])
+def test_without_joints_segments_lie_alone(solution: Any) -> None:
+    technique = dg.Clipmap(solution=solution, joints="1")
+    alone = flat_scene()
+    path = np.array([(10, 10), (90, 30), (15, 45), (85, 70), (50, 72), (20, 90)])
+    segments = [LineString(ends) for ends in itertools.pairwise(path)]
+    alone.add_lines(segments, color="red", width=9.0, width_units="m", technique=technique)
+    joined = draw(zigzag(dg.Clipmap(solution=solution), 9.0))
+    apart = draw(zigzag(technique, 9.0))
+    assert rms(apart, draw(alone)) <= 0.5
+    assert rms(apart, joined) > 5.0
 
 
 def test_line_primitives_are_clamped() -> None:

@@ -229,7 +229,9 @@ def test_scenes_from_files_are_edited_where_the_data_is_there(tmp_path: Path) ->
     prepared(scene).save(tmp_path / "map.decal")
     opened = dg.Renderer(SIZE, "none")
     opened.open(tmp_path / "map.decal")
-    with pytest.raises(dg.UnsupportedError, match="from its data"):
+    with pytest.raises(
+        dg.UnsupportedError, match=r"no vertices to edit. Open it by preprocess\(scene, cache"
+    ):
         opened.edit("areas", remove=1)
     opened.preprocess(scene, cache=tmp_path / "map.decal")
     opened.update(OBLIQUE)

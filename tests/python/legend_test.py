@@ -460,8 +460,15 @@ def test_opened_scenes_have_no_legends(tmp_path: Path) -> None:
     renderer.update(MAP)
     frame = renderer.render()
     assert (saved(frame, tmp_path) == frame.image).all()
-    with pytest.raises(dg.StyleError, match="opened from a file"):
+    with pytest.raises(
+        dg.StyleError, match=r"from a file has no legends. Open it by preprocess\(scene, cache"
+    ):
         frame.save(tmp_path / "map.png", legend=True)
+    renderer.preprocess(scene, cache=tmp_path / "map.decal")
+    renderer.update(MAP)
+    frame = renderer.render()
+    assert "open" in frame.stats.preprocess
+    assert (saved(frame, tmp_path) != frame.image).any()
 
 
 def test_legends_that_do_not_fit_are_told_of(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from shapely import LineString, box
 import decalgl as dg
 import judge
 import rounding
+import saved_scenes
 import scenes
 import shapes
 from decalgl.bench import topology
@@ -24,6 +25,8 @@ from scenes import View
 from small_scenes import BOUNDS, MAP, SIZE, draw, flat_scene
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     FloatArray = NDArray[np.float64]
@@ -121,6 +124,19 @@ def test_coverage_is_the_mean_of_its_samples(name: str) -> None:
     assert (difference > 2.1 / 255).mean() <= 0.02
 
 
+def test_coverage_of_translucent_features_is_that_of_static_ones() -> None:
+    hilly = scenes.build("translucent")
+    level = dg.Scene(dg.Terrain.flat(hilly.scene.terrain.bounds), relief=hilly.scene.relief)
+    level._layers.extend(hilly.scene.layers)
+    view = hilly._replace(scene=level)
+    static = judge.overlay_of(renderer(), view, "coverage")
+    own = judge.overlay_of(renderer(), by_loops(view, FULL), "coverage")
+    difference = np.abs(own - static).max(axis=-1)
+    assert (difference > 2.1 / 32).mean() <= 0.001
+    assert np.sqrt((difference**2).mean()) <= 0.005
+    assert (static[..., 3] % 1.0 > 0.1).any()
+
+
 # Parts of the technique
 
 
@@ -201,6 +217,99 @@ def test_looks_change_without_preparing(look: dict[str, Any]) -> None:
     static, loops = frames.values()
     np.testing.assert_array_equal(loops.ids, static.ids)
     assert np.abs(loops.image.astype(int) - static.image).max() <= 2
+
+
+def passes(frame: dg.Frame) -> list[str]:
+    return [one["name"] for one in frame.stats.passes]
+
+
+def test_cells_are_made_anew_only_for_what_they_do_not_hold() -> None:
+    frames = {}
+    for technique in ("static", FULL):
+        scene = flat_scene()
+        rings = [rough_ring(i, 50.0, 50.0, 45.0 - 8.0 * i) for i in range(5)]
+        layer = scene.add_polygons(rings, color=shapes.tints(5, 4), order=[4, 3, 2, 1, 0], technique=technique)
+        drawn = dg.Renderer(size=SIZE, antialias="none")
+        drawn.preprocess(scene)
+        drawn.update(MAP)
+        drawn.render()
+        looks: list[tuple[dict[str, Any], bool]] = [
+            ({"color": "red"}, False),
+            ({"visible": [True, True, False, True, True]}, False),
+            ({"visible": True}, False),
+            ({"visible": [False, True, True, True, True]}, True),  # the largest one hid the others
+            ({"color": shapes.tints(5, 5)}, False),
+            ({"visible": True}, True),  # it was not there
+        ]
+        frames[technique] = []
+        for look, is_made_anew in looks:
+            drawn.restyle(layer, **look)
+            frame = drawn.render()
+            frames[technique].append((frame.image.copy(), frame.ids.copy()))
+            if technique is FULL:
+                assert ("loops: cells" in passes(frame)) == is_made_anew, look
+    for (static, static_ids), (loops, loops_ids) in zip(*frames.values(), strict=True):
+        np.testing.assert_array_equal(loops_ids, static_ids)
+        assert np.abs(loops.astype(int) - static).max() <= 2
+
+
+@pytest.mark.parametrize("bvh", [None, "fitted"])
+def test_other_looks_inside_a_lens(bvh: str | None) -> None:
+    frames = {}
+    order: dict[str, Any] = {} if bvh else {"order": [float(i * 7 % 25) for i in range(25)]}
+    for technique in ("static", dg.Loops(bvh=bvh, detail=FULL.detail)):
+        drawn = dg.Renderer(size=SIZE, antialias="none")
+        scene = varied_scene(technique)
+        drawn.preprocess(scene)
+        drawn.update(MAP)
+        before = drawn.render().image.copy()
+        drawn.lens = dg.Lens(circle=(50.0, 50.0, 30.0), styles={0: {"color": "red", **order}}, hidden=(1,))
+        frames[technique] = drawn.render()
+        assert (frames[technique].image != before).any()
+    static, loops = frames.values()
+    np.testing.assert_array_equal(loops.ids, static.ids)
+    np.testing.assert_array_equal(loops.layers, static.layers)
+    assert np.abs(loops.image.astype(int) - static.image).max() <= 2
+    for at in ((50, 50), (45, 60), (5, 5)):
+        assert [str(each) for each in loops.pick(*at)] == [str(each) for each in static.pick(*at)]
+
+
+def test_a_lens_has_details_of_its_own() -> None:
+    drawn, layer = prepared(FULL)
+    drawn.set_picture((400, 400), "coverage")
+    drawn.update(MAP)
+    full = drawn.render().image.copy()
+    coarse = dataclasses.replace(FULL, detail=dg.Detail(screen=None, uniform=20.0))
+    drawn.restyle(layer, technique=coarse)
+    nothing = drawn.render().image.copy()
+    drawn.lens = dg.Lens(circle=(200.0, 200.0, 120.0), styles={layer: {"technique": FULL}})
+    seen = drawn.render().image
+    y, x = np.mgrid[0:400, 0:400] + 0.5
+    apart = np.hypot(x - 200.0, y - 200.0)
+    np.testing.assert_array_equal(seen[apart < 118.0], full[apart < 118.0])
+    np.testing.assert_array_equal(seen[apart > 122.0], nothing[apart > 122.0])
+    assert (full != nothing)[apart > 122.0].any()
+
+
+@pytest.mark.parametrize("bvh", [None, "efficient"])
+def test_what_is_opened_draws_what_was_saved(bvh: str | None, tmp_path: Path) -> None:
+    detail = dg.Detail(screen=2.0, by_distance=((10.0, 0.5), (80.0, 3.0)), lens=(50.0, 50.0, 20.0))
+    saved = dg.Renderer(size=SIZE, antialias="none")
+    saved.preprocess(varied_scene(dg.Loops(bvh=bvh, detail=detail)))
+    saved.restyle(0, color=shapes.tints(25, 7, 0.4))
+    saved.save(tmp_path / "map")
+    opened = dg.Renderer(size=SIZE, antialias="none")
+    opened.open(tmp_path / "map")
+    opened.save(tmp_path / "again")
+    assert (tmp_path / "again").read_bytes() == (tmp_path / "map").read_bytes()
+    changes: list[dict[str, Any]] = [{"visible": [i % 3 > 0 for i in range(25)]}, {"color": "red"}]
+    for change in changes:
+        frames = []
+        for drawn in (saved, opened):
+            drawn.restyle(0, **change)
+            drawn.update(MAP)
+            frames.append(drawn.render())
+        saved_scenes.assert_same(*frames)
 
 
 def test_cells_hold_what_is_in_the_picture() -> None:

@@ -244,8 +244,12 @@ def test_a_saved_scene_can_be_restyled(tmp_path: Path) -> None:
         renderer.restyle("areas", visible=np.arange(40) % 2 == 0, opacity=0.5)
         renderer.restyle("ways", color="red", order=-np.arange(30.0))
     assert_same(opened.render(), expected.render())
-    with pytest.raises(dg.InputError, match="keeps no columns"):
+    with pytest.raises(dg.InputError, match=r"keeps no columns. Open it by preprocess\(scene, cache"):
         opened.restyle("areas", visible="number > 3")
+    with pytest.raises(
+        dg.UnsupportedError, match=r"keeps no styles to change. Open it by preprocess\(scene, cache"
+    ):
+        opened.restyle("ways", corner="bevel")
     # What was changed is saved as it is, and is no cache of the scene.
     expected.save(tmp_path / "changed.decal")
     opened.open(tmp_path / "changed.decal")

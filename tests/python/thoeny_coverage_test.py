@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -97,9 +97,8 @@ def test_the_nearest_line_covers_by_the_formula() -> None:
     assert np.abs(got - over_each_other(only, colors)).max() <= STEPS / 255
 
 
-def test_a_pixel_of_many_lines_shows_the_topmost() -> None:
-    """20,000 lines in 3,600 cells of one pixel, of which the last cells hold the topmost."""
-    count = 20_000
+def pixel_of_lines(count: int) -> tuple[dg.Scene, dict[str, Any]]:
+    """Short lines in 3,600 cells of one pixel, of which the last cells hold the topmost; and how to draw them."""
     middles = np.random.default_rng(0).uniform(0.0, 99.0, (count, 1, 2))
     ends = np.concatenate([middles, middles + 0.4], axis=1)
     ends[-1] = [[1.0, 99.0], [99.9, 99.0]]
@@ -110,9 +109,28 @@ def test_a_pixel_of_many_lines_shows_the_topmost() -> None:
     scene = flat_scene()
     scene.add_lines(lines, width=widths, width_units="m", color=["blue"] * (count - 1) + ["red"])
     camera = dg.Camera.top_down((0.0, 0.0, 100.0, 100.0))
-    index = dg.BvhIndex(cells=60)
-    seen = scene.render(camera, (1, 1), index=index, coverage="thoeny").image[0, 0].astype(int)
-    ground = flat_scene().render(camera, (1, 1)).image[0, 0].astype(int)
+    return scene, {"camera": camera, "size": (1, 1), "index": dg.BvhIndex(cells=60), "coverage": "thoeny"}
+
+
+def test_a_pixel_of_many_lines_shows_the_topmost() -> None:
+    scene, options = pixel_of_lines(20_000)
+    seen = scene.render(**options).image[0, 0].astype(int)
+    ground = flat_scene().render(options["camera"], options["size"]).image[0, 0].astype(int)
     # Two in a hundred of the pixel are red.
     assert np.abs(seen[1:3] - 0.98 * ground[1:3]).max() <= STEPS
     assert seen[1] <= ground[1] - 3
+
+
+def test_more_lines_than_the_driver_looks_at_are_refused() -> None:
+    scene, options = pixel_of_lines(60_000)
+    try:
+        seen = scene.render(**options).image[0, 0].astype(int)
+    except dg.UnsupportedError as error:
+        message = str(error)
+        assert "coverage='exact'" in message
+        assert "65535 turns" in message
+    else:  # a driver whose loops have no end
+        assert "llvmpipe" not in next(record.detail for record in dg.doctor() if record.ok)
+        assert seen[0] > seen[1]
+    # The scene can be drawn in the other way.
+    assert scene.render(**options | {"coverage": "exact"}).image.shape == (1, 1, 4)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from . import lines, maps, networks, polygons
+from . import changes, lines, maps, networks, polygons
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,6 +18,7 @@ PICTURES: dict[str, Callable[[], Image]] = {
     **lines.PICTURES,
     **polygons.PICTURES,
     **maps.PICTURES,
+    **changes.PICTURES,
     **networks.PICTURES,
 }
 

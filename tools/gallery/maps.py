@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,52 +12,15 @@ from PIL import Image
 from shapely import LineString
 
 import decalgl as dg
-
-from .sheet import BLUE, RED, draw, enlarged, panel_size, sheet
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
-
 import honolulu
+
+from .ground import EYE, KINDS, cover, ground_scene, isolines, terrain
+from .sheet import BLUE, RED, draw, enlarged, panel_size, sheet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import geopandas as gpd
-
 MAP_SIZE = (760, 380)
-EYE = dg.Camera.look_at(honolulu.EYE, honolulu.TARGET, fov=honolulu.FIELD_OF_VIEW)
-GROUND = dg.Relief(on_layers=0.5)
-# What the valleys show most of.
-KINDS = {
-    "Ocean": "#a3c7dc",
-    "Urban": "#e6d6c3",
-    "Town": "#eee0cb",
-    "Grassland": "#d5dca6",
-    "Scrub": "#b4c792",
-    "MixedForest": "#93b27a",
-    "Stream": "#2f7fb8",
-    "Road": "#fffdf7",
-    "Freeway": "#e8924a",
-}
-
-
-@functools.cache
-def _terrain() -> dg.Terrain:
-    return dg.Terrain.open(honolulu.DEM)
-
-
-@functools.cache
-def _cover() -> gpd.GeoDataFrame:
-    return honolulu.land_cover()
-
-
-@functools.cache
-def _isolines(step: float) -> gpd.GeoDataFrame:
-    return honolulu.isolines(_terrain(), step)
-
-
-def _scene(relief: dg.Relief = GROUND) -> dg.Scene:
-    return dg.Scene(_terrain(), exaggeration=honolulu.EXAGGERATION, relief=relief)
 
 
 def _saved(scene: dg.Scene, camera: dg.Camera = EYE, size: tuple[int, int] = MAP_SIZE) -> Image.Image:
@@ -73,9 +34,9 @@ def _saved(scene: dg.Scene, camera: dg.Camera = EYE, size: tuple[int, int] = MAP
 
 def categories() -> Image.Image:
     """Land cover by category; what has no colour of its own shares one."""
-    scene = _scene()
-    shown = _cover()[_cover()["material"].isin(KINDS)]
-    scene.add_polygons(_cover(), color="#d3d8bd")
+    scene = ground_scene()
+    shown = cover()[cover()["material"].isin(KINDS)]
+    scene.add_polygons(cover(), color="#d3d8bd")
     scene.add_polygons(
         shown,
         column="material",
@@ -89,8 +50,8 @@ def categories() -> Image.Image:
 
 def numbers() -> Image.Image:
     """Isolines by height, wider every 200 m."""
-    scene = _scene(dg.Relief(color="#cfccc4", strength=0.4))
-    lines = _isolines(50.0)
+    scene = ground_scene(dg.Relief(color="#cfccc4", strength=0.4))
+    lines = isolines(50.0)
     scene.add_lines(
         lines,
         column="elevation",
@@ -107,9 +68,9 @@ def numbers() -> Image.Image:
 
 def styled_map() -> Image.Image:
     """Many styles on one map: hatched crops, inset outlines, cased roads, banded isolines."""
-    scene = _scene()
-    cover = _cover()
-    areas = cover[~cover["material"].isin(honolulu.NETWORK)]
+    scene = ground_scene()
+    everything = cover()
+    areas = everything[~everything["material"].isin(honolulu.NETWORK)]
     hatch: dict[str, dg.Hatch | None] = dict.fromkeys(areas["material"].unique())
     hatch["GolfCourse"] = dg.Hatch(spacing=60, width=30, angle=30)
     hatch["Grassland"] = dg.Hatch(spacing=50, width=25, angle=100)
@@ -122,7 +83,7 @@ def styled_map() -> Image.Image:
             width=10, width_units="m", mode="inset", color="#5d6b46", alpha=0.5, corner="miter"
         ),
     )
-    common, heavy = honolulu.split_isolines(_isolines(50.0), every=200.0)
+    common, heavy = honolulu.split_isolines(isolines(50.0), every=200.0)
     scene.add_lines(common, color=honolulu.ISOLINE_COLOR, alpha=0.6, width=4, width_units="m")
     scene.add_lines(
         heavy,
@@ -131,7 +92,7 @@ def styled_map() -> Image.Image:
         bands=[(0.35, "#5b3d1d"), (1.0, "#f6ecd9")],
         slope_correction="tangent",
     )
-    network = cover[cover["material"].isin(("Road", "Freeway"))]
+    network = everything[everything["material"].isin(("Road", "Freeway"))]
     scene.add_polygons(
         network,
         column="material",
@@ -143,7 +104,7 @@ def styled_map() -> Image.Image:
     arrows = dg.Pattern.arrows(every=330, length=190, shaft=0.35)
     scene.add_lines(
         [LineString(trail)],
-        crs=_terrain().crs,
+        crs=terrain().crs,
         color=RED,
         width=80,
         width_units="m",
@@ -184,10 +145,10 @@ def slopes() -> Image.Image:
 
 def _lines_scene() -> dg.Scene:
     """Isolines of two widths over roads, on ground without shadows."""
-    scene = _scene(dg.Relief(color="#e9e5dc", strength=0.0))
-    network = _cover()[_cover()["material"].isin(honolulu.NETWORK)]
+    scene = ground_scene(dg.Relief(color="#e9e5dc", strength=0.0))
+    network = cover()[cover()["material"].isin(honolulu.NETWORK)]
     scene.add_polygons(network, column="material", cmap={**honolulu.PALETTE, "Road": "#8d8478"})
-    common, heavy = honolulu.split_isolines(_isolines(50.0), every=200.0)
+    common, heavy = honolulu.split_isolines(isolines(50.0), every=200.0)
     scene.add_lines(common, color=honolulu.ISOLINE_COLOR, width=5, width_units="m")
     scene.add_lines(heavy, color=honolulu.ISOLINE_COLOR, width=14, width_units="m")
     return scene
@@ -196,13 +157,13 @@ def _lines_scene() -> dg.Scene:
 def zooms() -> Image.Image:
     """Isolines and roads of 12 m, and of 1.6 pixels, from three distances (after Zechmeister 2020, figure 3.2)."""
     size = panel_size(3, 104)
-    roads = _cover()[_cover()["material"].isin(("Road", "Freeway"))]
+    roads = cover()[cover()["material"].isin(("Road", "Freeway"))]
     panels = {}
     for label, looks in (("12 m", {"width": 12, "width_units": "m"}), ("1.6 pixels", {"width": 1.6})):
-        scene = _scene(dg.Relief(color="#e9e5dc", strength=0.45))
+        scene = ground_scene(dg.Relief(color="#e9e5dc", strength=0.45))
         outline: dict[str, Any] = {**looks, "color": BLUE}
         scene.add_polygons(roads, color="none", outline=dg.Outline(**outline))
-        scene.add_lines(_isolines(100.0), color=RED, **looks)
+        scene.add_lines(isolines(100.0), color=RED, **looks)
         for distance in (12_000.0, 4000.0, 1200.0):
             camera = dg.Camera.orbit((-1600.0, -3000.0, 300.0), distance=distance, azimuth=200, elevation=32)
             panels[f"{label}, from {distance / 1000:g} km"] = draw(scene, size, camera)
@@ -247,14 +208,14 @@ def silhouettes() -> Image.Image:
 
 def indexes() -> Image.Image:
     """One scene from three indexes, twice enlarged."""
-    scene = _scene(dg.Relief(color="#e9e5dc", strength=0.0))
+    scene = ground_scene(dg.Relief(color="#e9e5dc", strength=0.0))
     scene.add_polygons(
-        _cover(),
+        cover(),
         column="material",
         cmap=honolulu.PALETTE,
         outline=dg.Outline(width=12, width_units="m", mode="inset", color="#5d6b46", alpha=0.6),
     )
-    scene.add_lines(_isolines(50.0), color=honolulu.ISOLINE_COLOR, width=9, width_units="m", dash=(60, 30))
+    scene.add_lines(isolines(50.0), color=honolulu.ISOLINE_COLOR, width=9, width_units="m", dash=(60, 30))
     box = (300, 190, 436, 286)
     options: dict[str, dict[str, Any]] = {
         'index="grid"': {"index": "grid"},

@@ -1,9 +1,10 @@
-"""Polygons: outline modes, outlines wider than the polygon, hatches, orders."""
+"""Polygons: outline modes, outlines wider than the polygon, hatches, draw orders."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
+import geopandas as gpd
 import numpy as np
 from shapely import Point, Polygon, box
 
@@ -88,6 +89,25 @@ def outline_orders() -> Image:
     return sheet(panels, 3)
 
 
+def draw_orders() -> Image:
+    """Which feature lies over which: by row, by size, by a column."""
+    size = panel_size(3, 128)
+    middles, radii = [(0.34, 0.5), (0.46, 0.58), (0.58, 0.5), (0.7, 0.58)], (30, 52, 24, 44)
+    discs = [
+        Point(x * size[0], y * size[1]).buffer(radius, quad_segs=32)
+        for (x, y), radius in zip(middles, radii, strict=True)
+    ]
+    importance = {"geometry": discs, "importance": [4, 1, 2, 3], "color": [BLUE, YELLOW, RED, GREEN]}
+    panels = {}
+    for order in ("feature", "size", "importance"):
+        scene = paper(size)
+        outline = dg.Outline(width=3, width_units="m", color=DARK, order="feature")
+        data = gpd.GeoDataFrame(importance)
+        scene.add_polygons(data, crs=None, color=importance["color"], order=order, outline=outline)
+        panels[f'order="{order}"'] = draw(scene, size)
+    return sheet(panels, 3)
+
+
 def styled_outlines() -> Image:
     """Outlines are strokes: corners, dashes and bands, with round holes."""
     size = panel_size(3, 128)
@@ -115,6 +135,7 @@ def styled_outlines() -> Image:
 
 PICTURES: dict[str, Callable[[], Image]] = {
     "outline_modes.png": outline_modes,
+    "draw_orders.png": draw_orders,
     "outline_orders.png": outline_orders,
     "styled_outlines.png": styled_outlines,
     "hatches.png": hatches,

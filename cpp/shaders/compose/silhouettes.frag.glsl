@@ -14,9 +14,7 @@ layout(location = 0) out float mark;
 uniform sampler2D surface_texture;
 uniform ivec2 drawn_size;
 
-// In footprints.
-const float farthest = 1.0;
-const float farthest_at_borders = 0.15;
+const float farthest = 1.0;  // footprints
 
 const ivec2 neighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -31,6 +29,7 @@ float distance_from_plane(vec4 surface, mat2 footprints_of_map, vec4 beside, vec
 
 #ifdef OVERLAY
 uniform sampler2D overlay_texture;
+uniform float farthest_at_borders;  // footprints
 
 // Whether a border of a feature may pass through the pixel: a neighbour shows another colour.
 bool is_at_border(ivec2 pixel) {

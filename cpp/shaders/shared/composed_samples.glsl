@@ -1,15 +1,20 @@
 // Front-to-back composition of masks: colours over each other, each of a pixel's samples for itself.
+//
+// SAMPLE_MASK   the type of a set of samples, where it and its functions are not those of sample_masks.glsl
+#ifndef SAMPLE_MASK
 #include "shared/sample_masks.glsl"
+#define SAMPLE_MASK uvec2
+#endif
 
 struct Samples {
-    uvec2 open;  // those that still see something behind what was added
+    SAMPLE_MASK open;  // those that still see something behind what was added
     vec4 sum;
 #ifdef TRANSLUCENT
     float clear[sample_count];  // how much of what lies behind shows through
 #endif
 };
 
-Samples samples_of(uvec2 open) {
+Samples samples_of(SAMPLE_MASK open) {
     Samples samples;
     samples.open = open;
     samples.sum = vec4(0.0);
@@ -22,7 +27,7 @@ Samples samples_of(uvec2 open) {
     return samples;
 }
 
-void lay_under(inout Samples samples, uvec2 mask, vec4 straight) {
+void lay_under(inout Samples samples, SAMPLE_MASK mask, vec4 straight) {
     mask &= samples.open;
 #ifdef TRANSLUCENT
     float weight = 0.0;

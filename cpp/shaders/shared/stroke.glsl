@@ -33,24 +33,27 @@ float bar_reach(vec2 from_a, vec2 from_b, vec2 direction, float across, vec2 lon
     return between ? abs(across) : out_of_reach;
 }
 
-// `limit`: the cosine of the miter limit, the least angle between the two segments.
+// Whether a corner ends in a tip or a cut, and is no disc. `limit`: the cosine of the miter limit, the least angle
+// between the two segments.
+bool is_pointed(uint corner, vec2 incoming, vec2 outgoing, float limit) {
+    // Right angles are sharper than a limit of 90 degrees by rounding alone. A way straight back has no tip.
+    vec2 sum = incoming + outgoing;
+    bool has_tip = dot(incoming, outgoing) >= -limit - 1e-6 && dot(sum, sum) > 1e-12;
+    return corner == bevel_corner || (corner == miter_corner && has_tip);
+}
+
 float corner_reach(uint corner, vec2 from, vec2 incoming, vec2 outgoing, float limit) {
-    float turn = dot(incoming, outgoing);  // the cosine of the turn
-    // Right angles are sharper than a limit of 90 degrees by rounding alone.
-    bool is_round = corner == round_corner || (corner == miter_corner && turn < -limit - 1e-6);
     bool in_gap = dot(from, incoming) >= 0.0 && dot(from, outgoing) <= 0.0;
     float reach = max(abs(cross_product(incoming, from)), abs(cross_product(outgoing, from)));
     if (corner == bevel_corner) {
+        // The sine of the turn, from the difference or the sum, whichever is short. Nothing is left of a corner that goes
+        // straight on, or straight back.
         vec2 bend = incoming - outgoing;
-        float half_turn = 0.5 * length(incoming + outgoing);  // its cosine
-        // Nothing is left of a corner that goes straight on, or straight back.
-        bool is_flat = dot(bend, bend) < 1e-14 || half_turn < 1e-6;
-        reach = is_flat ? out_of_reach : max(reach, dot(from, normalize(bend)) / half_turn);
+        float sine = abs(cross_product(incoming, dot(incoming, outgoing) > 0.0 ? bend : incoming + outgoing));
+        reach = sine < 1e-7 ? out_of_reach : max(reach, dot(from, bend) / sine);
     }
-    // A way straight back has no tip.
-    bool is_tip = dot(incoming + outgoing, incoming + outgoing) > 1e-12;
-    if (corner == miter_corner && !is_tip) is_round = true;
-    return is_round ? length(from) : in_gap ? reach : out_of_reach;
+    bool pointed = is_pointed(corner, incoming, outgoing, limit);
+    return !pointed ? length(from) : in_gap ? reach : out_of_reach;
 }
 
 // Beside what the bar does.

@@ -1,4 +1,4 @@
-// What sixteen rays of each gathered pixel meet.
+// What the samples of each gathered pixel see, or with RAYS what sixteen rays for them do.
 //
 // What a sample sees lies near what the pixel or a neighbour sees at its centre. So its ray is followed for a few cells
 // around the nearest of those places, then around the nearest of those that lie behind, and so on. Where it meets
@@ -6,8 +6,8 @@
 // is seen at so flat an angle that a pixel spans many cells, the planes stand for it.
 //
 // RAMP   colours by height
+// RAYS   sixteen rays a pixel
 #define GATHERED 1
-#define RAYS 1
 #include "terrain/march.glsl"
 
 uniform sampler2D surface_texture;  // at the pixels' centres

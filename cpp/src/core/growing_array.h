@@ -41,15 +41,21 @@ public:
         if (fits) {
             result.storage_ = storage_;
         } else {
-            result.storage_ = std::make_shared<Storage>();
-            const std::size_t room = result.size_ + result.size_ / 4 + 4096;
-            result.storage_->charge = MemoryCharge(memory, name, room * sizeof(T));
-            result.storage_->room.resize(room);
-            result.storage_->used = result.size_;
+            result.storage_ = copied(before, result.size_, memory, name);
             result.storage_->origin = before.data();
-            std::copy(before.begin(), before.end(), result.storage_->room.begin());
         }
         std::copy(more.begin(), more.end(), result.storage_->room.data() + before.size());
+        return result;
+    }
+
+    // As many values as there were before, of which `change` makes others where they lie.
+    template <typename Change>
+    static GrowingArray changed(Span<const T> before, const MemoryAccount& memory, const std::string& name,
+                                Change change) {
+        GrowingArray result;
+        result.size_ = before.size();
+        result.storage_ = copied(before, result.size_, memory, name);
+        change(result.storage_->room.data());
         return result;
     }
 
@@ -60,6 +66,18 @@ private:
         std::atomic<std::size_t> used{0};
         const T* origin = nullptr;
     };
+
+    // With room for more than `size` values.
+    static std::shared_ptr<Storage> copied(Span<const T> before, std::size_t size,
+                                           const MemoryAccount& memory, const std::string& name) {
+        auto storage = std::make_shared<Storage>();
+        const std::size_t room = size + size / 4 + 4096;
+        storage->charge = MemoryCharge(memory, name, room * sizeof(T));
+        storage->room.resize(room);
+        storage->used = size;
+        std::copy(before.begin(), before.end(), storage->room.begin());
+        return storage;
+    }
 
     std::shared_ptr<Storage> storage_;
     std::size_t size_ = 0;
@@ -80,6 +98,13 @@ public:
         if (more.empty())
             return;
         growing_ = growing_.appended(values_, more, memory, name);
+        values_ = growing_.values();
+    }
+
+    // Makes other values of those that there are, and room for more. `change` is given a pointer to the first.
+    template <typename Change>
+    void change(const MemoryAccount& memory, const std::string& name, Change change) {
+        growing_ = GrowingArray<T>::changed(values_, memory, name, change);
         values_ = growing_.values();
     }
 

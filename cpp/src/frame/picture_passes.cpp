@@ -204,11 +204,13 @@ void Pipeline::show_mean(int samples) {
     draw_full_screen();
 }
 
-bool Pipeline::samples_creases() {
-    bool samples = shows_layers();
-    for_each_shown(
-        [&](size_t, const Technique& technique) { samples = samples && !technique.filters_creases(); });
-    return samples;
+Facets Pipeline::facets() {
+    Facets facets = Facets::of_rays;
+    for_each_shown([&](size_t, const Technique& technique) {
+        if (technique.follows_slopes())
+            facets = Facets::of_samples;
+    });
+    return facets;
 }
 
 void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image) {
@@ -216,8 +218,8 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
     {
         const gl::PassTimer timer(&timings_, "silhouettes");
         pixels =
-            silhouettes_->find(targets_->seen.gbuffer, samples_creases() ? &targets_->seen.overlay : nullptr,
-                               piece.drawn, piece.shown, programs_);
+            silhouettes_->find(targets_->seen.gbuffer, shows_layers() ? &targets_->seen.overlay : nullptr,
+                               facets(), piece.drawn, piece.shown, programs_);
     }
     silhouette_pixels_ += pixels.size();
     for (size_t first = 0; first < pixels.size(); first += Silhouettes::batch_size) {
@@ -238,7 +240,10 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
 void Pipeline::follow_rays(const Piece& piece) {
     const gl::PassTimer timer(&timings_, "gathered");
     const LowerRows used(silhouettes_->ray_columns(), silhouettes_->ray_rows());
-    gl::Program& program = programs_.get("gathered", terrain_->ray_flags());
+    gl::Flags flags = terrain_->ray_flags();
+    if (facets() == Facets::of_rays)
+        flags.insert("RAYS");
+    gl::Program& program = programs_.get("gathered", flags);
     silhouettes_->rays().framebuffer.bind();
     program.use();
     terrain_->set_for_rays(program);
@@ -252,10 +257,10 @@ void Pipeline::follow_rays(const Piece& piece) {
 
 // The colours of some pixels, each the mean of its samples.
 std::vector<uint8_t> Pipeline::draw_gathered(const Piece& piece, Span<const uint32_t> pixels) {
-    silhouettes_->gather(pixels);
+    silhouettes_->gather(pixels, facets());
     follow_rays(piece);
     const LowerRows used(silhouettes_->sample_columns(), silhouettes_->sample_rows());
-    {
+    if (facets() == Facets::of_rays) {
         const gl::PassTimer timer(&timings_, "spread");
         silhouettes_->spread(programs_);
     }

@@ -12,6 +12,7 @@
 #include "frame/surface_readback.h"
 #include "gl/pass_timer.h"
 #include "gl/readback.h"
+#include "gl/sample_query.h"
 
 namespace decalgl {
 namespace {
@@ -101,10 +102,12 @@ void Pipeline::upload_layers(const PreparedScene& scene) {
         const bool is_there = drawer.prepared == pass.prepared && drawer.in_lens == pass.in_lens;
         if (is_there || !pass.shows_anything())
             continue;
+        const bool was_updated = drawer.is_updated;
         drawer.prepared = nullptr;
         drawer.is_updated = false;
         drawer.technique->upload(pass.prepared, pass.in_lens, {&terrain_->heights(), &scene.terrain},
                                  memory_);
+        drawer.is_updated = was_updated && drawer.technique->keeps_update();
         drawer.prepared = pass.prepared;
         drawer.in_lens = pass.in_lens;
     }
@@ -408,6 +411,17 @@ double Pipeline::time_floor() {
         draw_full_screen();
     }
     return log.total();
+}
+
+uint64_t Pipeline::count_fragments() {
+    uint64_t total = 0;
+    for (const Piece& piece : pieces_) {
+        draw_centres(piece);
+        gl::SampleQuery query;
+        draw_overlay(targets_->seen, Antialias::none);
+        total += query.count();
+    }
+    return total;
 }
 
 }  // namespace decalgl

@@ -43,6 +43,8 @@ public:
     void draw_surface(std::vector<double>& world, std::vector<float>& depth, std::vector<float>& gradients);
     // Milliseconds that the floor pass takes, for benchmarks.
     double time_floor();
+    // Samples that the layers write in one more drawing.
+    uint64_t count_fragments();
 
     bool draws(const PreparedScene* scene, const PictureRequest& request) const;
     // Since the last update, or since an image that was there already was asked for.
@@ -111,7 +113,7 @@ private:
     void add_sample();
     void show_mean(int samples);
     void redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image);
-    bool samples_creases();
+    Facets facets();
     void follow_rays(const Piece& piece);
     std::vector<uint8_t> draw_gathered(const Piece& piece, Span<const uint32_t> pixels);
     void smooth_edges(const Piece& piece);

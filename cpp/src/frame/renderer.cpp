@@ -69,6 +69,12 @@ struct RendererState {
         return latest;
     }
 
+    Pipeline& updated_pipeline() {
+        if (!pipeline)
+            throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
+        return *pipeline;
+    }
+
     void set_scene(std::shared_ptr<const PreparedScene> prepared) {
         const std::lock_guard<std::mutex> lock(scene_mutex);
         scene = std::move(prepared);
@@ -250,10 +256,15 @@ void Renderer::forget() {
 }
 
 double Renderer::time_floor() {
-    if (!state_->pipeline)
-        throw Error(ErrorKind::input, "no view to draw yet; call update(camera) first");
-    const gl::CurrentScope current(state_->pipeline->context());
-    return state_->pipeline->time_floor();
+    Pipeline& pipeline = state_->updated_pipeline();
+    const gl::CurrentScope current(pipeline.context());
+    return pipeline.time_floor();
+}
+
+uint64_t Renderer::count_fragments() {
+    Pipeline& pipeline = state_->updated_pipeline();
+    const gl::CurrentScope current(pipeline.context());
+    return pipeline.count_fragments();
 }
 
 void FrameState::read_surface() {

@@ -8,22 +8,27 @@ namespace decalgl {
 namespace {
 
 // Texels of a pixel from side to side: shaders/shared/gathered.glsl.
-constexpr int ray_side = 4;
+constexpr int rays_side = 4;
 constexpr int sample_side = 8;
 constexpr int columns = 256;  // pixels in a row of a batch
 constexpr int rows = static_cast<int>(Silhouettes::batch_size) / columns;
 constexpr GLuint pixels_unit = 7;
 
+// Footprints that a neighbour may be seen off a pixel's plane at a border. What follows from slopes goes on over the plane, and
+// is off by more.
+constexpr float farthest_at_borders = 0.15F;
+constexpr float farthest_on_slopes = 0.02F;
+
 using Offsets = std::vector<glm::vec2>;
 
 const Offsets& ray_offsets() {
-    static const Offsets offsets = sample_pattern(ray_side * ray_side);
+    static const Offsets offsets = sample_pattern(rays_side * rays_side);
     return offsets;
 }
 
 int sixteenth_of(glm::vec2 offset) {
-    const glm::ivec2 place(glm::floor((offset + 0.5F) * static_cast<float>(ray_side)));
-    return place.y * ray_side + place.x;
+    const glm::ivec2 place(glm::floor((offset + 0.5F) * static_cast<float>(rays_side)));
+    return place.y * rays_side + place.x;
 }
 
 // In the order of the texels: four samples of a pixel's area are in each sixteenth of it and one ray, as both
@@ -31,12 +36,12 @@ int sixteenth_of(glm::vec2 offset) {
 Offsets offsets_of_samples() {
     constexpr glm::vec2 samples[] = {AREA_SAMPLE_OFFSETS(glm::vec2)};
     Offsets offsets(sample_side * sample_side);
-    for (int ray = 0; ray < ray_side * ray_side; ++ray) {
+    for (int ray = 0; ray < rays_side * rays_side; ++ray) {
         int inside = 0;
         for (const glm::vec2 sample : samples) {
             if (sixteenth_of(sample) != sixteenth_of(ray_offsets()[static_cast<size_t>(ray)]))
                 continue;
-            const int x = 2 * (ray % ray_side) + inside % 2, y = 2 * (ray / ray_side) + inside / 2;
+            const int x = 2 * (ray % rays_side) + inside % 2, y = 2 * (ray / rays_side) + inside / 2;
             offsets[static_cast<size_t>(y * sample_side + x)] = sample;
             ++inside;
         }
@@ -57,7 +62,7 @@ Silhouettes::Silhouettes(int width, int height, bool has_overlay, const MemoryAc
       marks_(gl::Texture2D::create(memory, "silhouettes: marks", GL_R8, width, height)),
       marks_framebuffer_(gl::Framebuffer::create("marks", {{GL_COLOR_ATTACHMENT0, &marks_}})) {}
 
-std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay,
+std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
                                         const Rectangle& drawn, const Rectangle& shown,
                                         gl::ProgramLibrary& programs) {
     gl::Program& program =
@@ -69,6 +74,8 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
     if (overlay != nullptr) {
         program.set("overlay_texture", 1);
         overlay->bind(1);
+        program.set("farthest_at_borders",
+                    facets == Facets::of_samples ? farthest_on_slopes : farthest_at_borders);
     }
     program.set("drawn_size", glm::ivec2(drawn.width, drawn.height));
     no_vertices_.bind();
@@ -92,7 +99,7 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
 }
 
 void Silhouettes::make_batch_targets() {
-    rays_ = GBuffer(ray_side * columns, ray_side * rows, memory_);
+    rays_ = GBuffer(rays_side * columns, rays_side * rows, memory_);
     const int width = sample_side * columns, height = sample_side * rows;
     seen_ = std::make_unique<SeenTargets>(width, height, has_overlay_, OverlayDepth::none, memory_);
     composed_ = gl::Texture2D::create(memory_, "silhouettes: composed", GL_RGBA8, width, height);
@@ -101,10 +108,11 @@ void Silhouettes::make_batch_targets() {
     means_framebuffer_ = gl::Framebuffer::create("silhouettes' means", {{GL_COLOR_ATTACHMENT0, &means_}});
 }
 
-void Silhouettes::gather(Span<const uint32_t> pixels) {
+void Silhouettes::gather(Span<const uint32_t> pixels, Facets facets) {
     if (!seen_)
         make_batch_targets();
     count_ = pixels.size();
+    facets_ = facets;
     pixels_ = gl::TextureBuffer::from(memory_, "silhouettes: pixels", GL_R32UI, pixels);
 }
 
@@ -112,12 +120,16 @@ int Silhouettes::used_rows() const {
     return static_cast<int>((count_ + columns - 1) / columns);
 }
 
+int Silhouettes::ray_side() const {
+    return facets_ == Facets::of_rays ? rays_side : sample_side;
+}
+
 int Silhouettes::ray_columns() const {
-    return ray_side * columns;
+    return ray_side() * columns;
 }
 
 int Silhouettes::ray_rows() const {
-    return ray_side * used_rows();
+    return ray_side() * used_rows();
 }
 
 int Silhouettes::sample_columns() const {
@@ -134,15 +146,16 @@ void Silhouettes::set_pixels(gl::Program& program) const {
     program.set("gathered_columns", columns);
 }
 
-void Silhouettes::set_rays(gl::Program& program) const {
-    set_pixels(program);
-    set_offsets(program, "gathered_offsets", ray_offsets());
-}
-
 void Silhouettes::set_gathered(gl::Program& program) const {
     static const Offsets offsets = offsets_of_samples();
     set_pixels(program);
     set_offsets(program, "gathered_offsets", offsets);
+}
+
+void Silhouettes::set_rays(gl::Program& program) const {
+    set_gathered(program);
+    if (facets_ == Facets::of_rays)
+        set_offsets(program, "gathered_offsets", ray_offsets());
 }
 
 void Silhouettes::spread(gl::ProgramLibrary& programs) {

@@ -20,6 +20,10 @@
 
 namespace decalgl {
 
+// Which facets of the ground a pixel's samples lie on: those that sixteen rays meet, each for the samples near it, or each
+// sample on its own.
+enum class Facets { of_rays, of_samples };
+
 class Silhouettes {
 public:
     // For rectangles of at most this size.
@@ -27,16 +31,16 @@ public:
 
     // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
     // that of the pixels' centres. overlay: none where creases are left alone.
-    std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, const Rectangle& drawn,
-                               const Rectangle& shown, gl::ProgramLibrary& programs);
+    std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
+                               const Rectangle& drawn, const Rectangle& shown, gl::ProgramLibrary& programs);
 
     static constexpr size_t batch_size = 8192;
     // Makes a batch of pixels the ones that programs with the flag GATHERED see.
-    void gather(Span<const uint32_t> pixels);
+    void gather(Span<const uint32_t> pixels, Facets facets);
     void set_gathered(gl::Program& program) const;
     // The same for the program that follows the batch's rays, into `rays()`.
     void set_rays(gl::Program& program) const;
-    // The samples on what the rays met, into `seen()`.
+    // The samples on what the rays met, into `seen()`; where they have rays of their own, those are there already.
     void spread(gl::ProgramLibrary& programs);
     // The texels across, and the rows of them that the batch fills, of `rays()` and `seen()`.
     int ray_columns() const;
@@ -44,7 +48,7 @@ public:
     int sample_columns() const;
     int sample_rows() const;
 
-    const GBuffer& rays() const { return rays_; }
+    const GBuffer& rays() const { return facets_ == Facets::of_rays ? rays_ : seen_->gbuffer; }
     const SeenTargets& seen() const { return *seen_; }
     const gl::Framebuffer& composed() const { return composed_framebuffer_; }
     // Of the batch's pixels, R, G, B, A with straight alpha, once it is composed.
@@ -52,6 +56,7 @@ public:
 
 private:
     void make_batch_targets();
+    int ray_side() const;
     int used_rows() const;  // of pixels
     void set_pixels(gl::Program& program) const;
 
@@ -62,6 +67,7 @@ private:
     gl::Framebuffer marks_framebuffer_;
     gl::TextureBuffer pixels_;
     size_t count_ = 0;
+    Facets facets_ = Facets::of_rays;
     GBuffer rays_;  // made when first needed, as what follows
     std::unique_ptr<SeenTargets> seen_;
     gl::Texture2D composed_;

@@ -138,4 +138,14 @@ LargeArray<uint32_t> ranks_with_added(Span<const Decal> slots, Span<const uint32
     return result;
 }
 
+bool permutes(Span<const uint32_t> numbers, size_t count) {
+    std::vector<bool> seen(count, false);
+    for (const uint32_t number : numbers) {
+        if (number >= count || seen[number])
+            return false;
+        seen[number] = true;
+    }
+    return numbers.size() == count;
+}
+
 }  // namespace decalgl

@@ -30,4 +30,7 @@ LargeArray<uint32_t> reordered_ranks(const LayerLook& look, const LayerRules& ru
 LargeArray<uint32_t> ranks_with_added(Span<const Decal> slots, Span<const uint32_t> ranks,
                                       Span<const Decal> added, Span<const LayerRules> rules);
 
+// Each of the numbers below `count` once.
+bool permutes(Span<const uint32_t> numbers, size_t count);
+
 }  // namespace decalgl

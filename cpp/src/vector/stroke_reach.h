@@ -36,7 +36,6 @@ inline double bar_reach(Vector2 from_a, Vector2 from_b, Vector2 direction, Vecto
 // `limit`: the cosine of the miter limit.
 inline double corner_reach(Corner corner, Vector2 from, Vector2 incoming, Vector2 outgoing, double limit) {
     const Vector2 sum{incoming.x + outgoing.x, incoming.y + outgoing.y};
-    const Vector2 bend{incoming.x - outgoing.x, incoming.y - outgoing.y};
     const bool sharp = dot(incoming, outgoing) < -limit - 1e-6 || dot(sum, sum) <= 1e-12;
     if (corner == Corner::round || (corner == Corner::miter && sharp))
         return length(from);
@@ -45,10 +44,9 @@ inline double corner_reach(Corner corner, Vector2 from, Vector2 incoming, Vector
     const double reach = std::max(std::abs(cross(incoming, from)), std::abs(cross(outgoing, from)));
     if (corner == Corner::miter)
         return reach;
-    const double half_turn = 0.5 * length(sum);
-    if (dot(bend, bend) < 1e-14 || half_turn < 1e-6)
-        return out_of_reach;
-    return std::max(reach, dot(from, bend) / length(bend) / half_turn);
+    const double sine = std::abs(cross(incoming, outgoing));
+    const Vector2 bend{incoming.x - outgoing.x, incoming.y - outgoing.y};
+    return sine < 1e-7 ? out_of_reach : std::max(reach, dot(from, bend) / sine);
 }
 
 // Beside what the bar does.

@@ -27,6 +27,7 @@ PAGES = (
     "docs/techniques/clipmap.md",
     "docs/techniques/volume.md",
     "docs/techniques/loops.md",
+    "docs/techniques/dynamic.md",
 )
 
 

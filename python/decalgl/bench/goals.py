@@ -79,6 +79,10 @@ RATIOS = {
     "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
     "style": Ratio("{style_ms:.1f} ms ÷ plain {plain_ms:.1f} ms"),
     "D": Ratio("lists {lists_ms:.0f} ms ÷ bins {bins_ms:.0f} ms", least=1.0, scenes="pixel lines"),
+    "simplified": Ratio("all vertices {every_ms:.0f} ms ÷ those left {simple_ms:.0f} ms"),
+    "elsewhere": Ratio(
+        "a view beside all lines {elsewhere_ms:.0f} ms ÷ ground {ground_ms:.0f} ms", most=1.05
+    ),
     "update_share": Ratio("{bins_update_ms:.0f} ms of {bins_ms:.0f} ms, bins"),
     "loops_detail": Ratio("half a pixel {half_ms:.1f} ms ÷ full detail {full_ms:.1f} ms"),
     "loops_static": Ratio("{half_ms:.1f} ms ÷ static {static_ms:.1f} ms"),

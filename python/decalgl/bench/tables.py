@@ -5,6 +5,7 @@ A table is described by its columns, each a heading and a format of the record t
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     Results = Mapping[str, Any]
     Columns = Mapping[str, str]
 
-TEXTS = ("scene", "view", "index")
+TEXTS = ("scene", "view", "index", "artefact")
 # The README leaves out the view from far away.
 README_VIEWS = ("overview", "oblique", "close", "worst")
 
@@ -167,6 +168,49 @@ CLIPMAP = {
     "thin alone": "{thin}",
     "picture": "{picture_ms:.0f} ms",
 }
+LINES = {"segments": "{segments:,.0f}"}
+DYNAMIC = {
+    **LINES,
+    "picture": "{picture}",
+    "view": "{view}",
+    "bins": "{bins_ms:.0f} ms",
+    "lists ÷ bins": "{lists_text}",
+    "coverage ÷ none": "{coverage_text}",
+    "update's share": "{update_share:.0%}",
+}
+DYNAMIC_STEPS = {
+    **LINES,
+    "view": "{view}",
+    "simplify": "{share_simplify:.0%}",
+    "compact vertices": "{share_compact_vertices:.0%}",
+    "cull": "{share_cull:.0%}",
+    "compact segments": "{share_compact_segments:.0%}",
+    "project": "{share_project:.0%}",
+    "into tiles": "{share_bins:.0%}",
+    "drawing": "{share_drawing:.0%}",
+}
+DYNAMIC_SIMPLIFIED = {
+    **LINES,
+    "view": "{view}",
+    "matched vertices": "{matched_vertices:,.0f}",
+    "left by simplification": "{kept_vertices:,.0f}",
+    "segments left by culling": "{seen_segments:,.0f}",
+    "all vertices ÷ simplified, time": "{simplified:.2f}",
+}
+DYNAMIC_ELSEWHERE = {
+    **LINES,
+    "frame beside all lines": "{elsewhere_ms:.0f} ms",
+    "÷ ground alone": "{elsewhere:.2f}",
+}
+DYNAMIC_MEMORY = {
+    **LINES,
+    "picture": "{picture}",
+    "bins": "{megabytes:.0f} MB",
+    "bytes a matched vertex": "{bins_bytes_per_vertex:.0f}",
+    "bytes a pixel, bins": "{bins_bytes_per_pixel:.0f}",
+    "bytes a pixel, lists": "{lists_pixel_text}",
+}
+ARTEFACTS = {"artefact": "{artefact}", "figure": "{figure:.3g} {unit}"}
 VOLUMES = {
     "scene": "{scene}",
     "technique": "{way}",
@@ -300,6 +344,46 @@ def volumes(results: Results) -> str:
     return _table([{**one, "megabytes": one["bytes"] / 1e6} for one in found], VOLUMES) or "No figures yet."
 
 
+def dynamic(results: Results) -> str:
+    """Dynamic lines: methods, steps of the update, simplification, views beside all lines, memory."""
+    found = [one for one in results["records"] if one["technique"] == "dynamic"]
+    drawn = [_dynamic_texts(one) for one in found if "update_share" in one and "picture" in one]
+    if not drawn:
+        return "No figures yet."
+    smallest = [one for one in drawn if one["picture"] == drawn[0]["picture"]]
+    overview = [one for one in drawn if one["view"] == "overview"]
+    tables = [
+        _table(drawn, DYNAMIC),
+        _table(smallest, DYNAMIC_STEPS),
+        _table([one for one in found if "simplified" in one], DYNAMIC_SIMPLIFIED),
+        _table([one for one in found if "elsewhere" in one], DYNAMIC_ELSEWHERE),
+        _table(overview, DYNAMIC_MEMORY),
+    ]
+    return "\n\n".join(tables)
+
+
+def _dynamic_texts(one: Record) -> Record:
+    """A record with a dash in place of what was not measured."""
+
+    def text(name: str, form: str) -> str:
+        return format(one[name], form) if name in one else "–"
+
+    return {
+        **one,
+        "lists_text": text("D", ".1f"),
+        "coverage_text": text("filtered", ".1f"),
+        "lists_pixel_text": text("lists_bytes_per_pixel", ".0f"),
+        "share_drawing": 1.0 - one["update_share"],
+        "megabytes": one["bins_bytes"] / 1e6,
+    }
+
+
+def artefacts(technique: str, results: Results) -> str:
+    """What the artefacts of a technique come to."""
+    found = [one for one in results["records"] if one["technique"] == technique and "artefact" in one]
+    return _table(found, ARTEFACTS) or "No figures yet."
+
+
 BLOCKS: dict[str, Callable[[Results], str]] = {
     "summary": summary,
     "ratios": ratios,
@@ -312,6 +396,11 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "clipmap": clipmap,
     "volumes": volumes,
     "loops": loops,
+    "dynamic": dynamic,
+    **{
+        f"{technique}_artefacts": partial(artefacts, technique)
+        for technique in ("volume", "clipmap", "distance_field")
+    },
 }
 
 

@@ -3,8 +3,8 @@
 crossings   pairs of edges that meet elsewhere than at a common end, beyond those of the input
 openings    edges of an odd number of rings that are not on the map's rim: there, neighbours came apart or overlap
 
-FILE: polygons in any format, or the word iso-bands for those of San Francisco bay. The counts know nothing of how LOOPS
-works: crossings are found by shapely, and edges are compared by their coordinates.
+FILE: polygons in any format, or a word: iso-bands for those of San Francisco bay, gshhg for the coasts of the world. The
+counts know nothing of how LOOPS works: crossings are found by shapely, and edges are compared by their coordinates.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 EVERYTHING = -1.0  # a tolerance
 MOST_EDGES_AT_ONCE = 200_000  # queries of shapely hold all their pairs
+WIDEST_ZONE = 12.0  # degrees; wider maps are counted in degrees
 
 
 @dataclass(frozen=True)
@@ -116,9 +117,9 @@ def levels(features: dg.FeatureTable, count: int) -> list[float]:
 
 
 def _features(name: str, most: int, box: list[float] | None) -> dg.FeatureTable:
-    if name == "iso-bands":
-        from . import folders, workload
+    from . import folders, workload
 
+    if name == "iso-bands":
         work = workload.Workload(workload.real_ground(), folders.data(), dict(workload.SIZES), "5M", print)
         arrays = work.contours("iso-bands", "1M")
         rows = np.arange(len(arrays["heights"]))
@@ -128,12 +129,14 @@ def _features(name: str, most: int, box: list[float] | None) -> dg.FeatureTable:
     else:
         import geopandas
 
-        path = Path(name)
+        path = workload.coast_file() if name == "gshhg" else Path(name)
         read = geopandas.read_parquet if path.suffix == ".parquet" else geopandas.read_file
         frame = read(path)
         if box is not None:
             frame = frame.cx[box[0] : box[2], box[1] : box[3]]
-        frame = frame.to_crs(frame.estimate_utm_crs()) if frame.crs and frame.crs.is_geographic else frame
+        west, _, east, _ = frame.total_bounds
+        if frame.crs and frame.crs.is_geographic and east - west < WIDEST_ZONE:
+            frame = frame.to_crs(frame.estimate_utm_crs())
         bare = frame.geometry.set_crs(None, allow_override=True)
         table = read_features(bare, "polygons", terrain_crs=None, layer_name=path.stem)[0]
     return _last_features(table, most)

@@ -187,8 +187,7 @@ def render_overlay(
     x0, y0, x1, y1 = crop or (0, 0, *size)
     if x1 <= x0 or y1 <= y0:
         raise ValueError(f"The crop {(x0, y0, x1, y1)} holds no pixels.")
-    planes = follows_slopes(scene)
-    caster = RayCaster(scene, camera, size) if surface is None or planes else None
+    caster = RayCaster(scene, camera, size) if surface is None else None
     view = viewpoint(camera, size)
     rows = max(1, BATCH // ((x1 - x0) * samples * samples))
     bands = []
@@ -200,31 +199,19 @@ def render_overlay(
         else:
             assert caster is not None
             seen = caster.cast(points.reshape(-1, 2)).reshape(*points.shape[:4])
-        gradients = caster.cast(pixel_centres(band)).gradient if caster is not None and planes else None
-        bands.append(_filter_band(scene, view, points, seen, gradients, nearest))
+        bands.append(_filter_band(scene, view, points, seen, nearest))
     return Overlay(*(np.concatenate(parts) for parts in zip(*bands, strict=True)))
 
 
 def _filter_band(
-    scene: SceneLike,
-    view: Viewpoint,
-    points: FloatArray,
-    seen: Surface,
-    gradients: FloatArray | None,
-    nearest: bool,
+    scene: SceneLike, view: Viewpoint, points: FloatArray, seen: Surface, nearest: bool
 ) -> tuple[FloatArray, BoolArray, FloatArray, BoolArray]:
-    """The members of an Overlay for sub-positions (h, w, s, s, 2) and what they see.
-
-    gradients: (h * w, 2) of the ground at pixel centres, which slopes are those of all of the pixel.
-    """
+    """The members of an Overlay for sub-positions (h, w, s, s, 2) and what they see, each with its own slope."""
     height, width, samples = points.shape[:3]
     hit = np.isfinite(seen.depth)
     slopes = None
-    if gradients is not None:
-        gradients = np.repeat(gradients, samples * samples, axis=0)
-        # Where the centre sees sky, each place has its own.
-        gradients = np.where(np.isnan(gradients), seen.gradient.reshape(-1, 2), gradients)
-        slopes = _slopes(scene, view, seen.world.reshape(-1, 3), gradients)
+    if follows_slopes(scene):
+        slopes = _slopes(scene, view, seen.world.reshape(-1, 3), seen.gradient.reshape(-1, 2))
     colors = composite(scene, seen.world[..., :2].reshape(-1, 2), slopes, nearest)
     colors = colors.reshape(height, width, samples * samples, 4)
     varied = (colors != colors[:, :, :1]).any(axis=(2, 3))

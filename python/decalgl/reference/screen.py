@@ -6,7 +6,9 @@ The screen is a picture of that plane. An offset a on the map from the point, wi
 
 so straight lines stay straight, and distances on the screen are those between points and segments as ever. A point is
 inside a stroke whose half width is h pixels when the stroke's centre line comes as near as h, and when the ground under
-the nearest point of that line is seen no farther than max(h, 1) / 2 + 1 / 4 pixels from where the plane has it.
+the nearest point of that line is seen no farther than max(h, 1) / 2 + 1 / 4 pixels from where the plane has it. That
+point is looked for among the places where the line runs beside the point, at corners in the gap between two segments,
+and at the line's ends: so it does not matter where straight lines are cut.
 """
 
 from __future__ import annotations
@@ -296,10 +298,9 @@ def _measure_joints(
     on_screen = Joints(place, coming, going, joints.arc, joints.shape, widths, joints.feature)
     with np.errstate(invalid="ignore", divide="ignore"):
         clearance, gauge, _ = on_screen.measure(np.zeros_like(xy), _Solid(style), None)
-    if style.pattern is not None:
-        # Joints fill the gap between bars alone, so that marks end flat.
-        gap = np.minimum(-(place * coming).sum(axis=1), (place * going).sum(axis=1))
-        clearance = np.minimum(clearance, gap)
+    # Joints fill the gap between bars alone: marks end flat, and beside a bar its own ground counts.
+    gap = np.minimum(-(place * coming).sum(axis=1), (place * going).sum(axis=1))
+    clearance = np.minimum(clearance, gap)
     return _Measured(clearance, gauge, joints.arc, joints.place, place, nowhere)
 
 

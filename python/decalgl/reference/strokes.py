@@ -256,12 +256,14 @@ def styled_strokes(
     for index, style in enumerate(stroke.styles):
         wanted = drawn & (style_of == index)
         if wanted.any():
-            bars, joints = _pieces(Chains.of(features, wanted), style, half_widths)
+            bars, joints = _pieces(Chains.of(features, wanted), style, half_widths, stroke.follows_view)
             found.append(StyledStroke(style, bars, joints))
     return found
 
 
-def _pieces(chains: Chains, style: StyleLike, half_widths: FloatArray) -> tuple[Bars, Joints]:
+def _pieces(
+    chains: Chains, style: StyleLike, half_widths: FloatArray, on_screen: bool
+) -> tuple[Bars, Joints]:
     following = chains.following()
     vector = chains.vertices[following] - chains.vertices
     length = np.hypot(*vector.T)
@@ -272,8 +274,10 @@ def _pieces(chains: Chains, style: StyleLike, half_widths: FloatArray) -> tuple[
     begins, ends = chains.is_end()
     dot = begins & ends
     # A bar with a round end is a disc's other half too, unless it is flat and near at the other end, or has a pattern:
-    # then the disc is a piece of its own, which covers by the vertex's place in the pattern.
-    joined = ROUNDED if style.corner == "round" and style.pattern is None else FLAT
+    # then the disc is a piece of its own, which covers by the vertex's place in the pattern. So are corners on the
+    # screen, which ask for the ground under the vertex.
+    apart = on_screen or style.pattern is not None
+    joined = ROUNDED if style.corner == "round" and not apart else FLAT
     capped = {"round": ROUNDED if style.pattern is None else FLAT, "butt": FLAT, "square": LENGTHENED}[
         style.cap
     ]
@@ -295,7 +299,7 @@ def _pieces(chains: Chains, style: StyleLike, half_widths: FloatArray) -> tuple[
     inner = ~begins & ~ends
     if style.corner != "round":
         shape[inner] = MITER if style.corner == "miter" else BEVEL
-    elif style.pattern is not None or style.cap == "butt":
+    elif apart or style.cap == "butt":
         shape[inner] = DISC
     if style.cap == "round":
         shape[dot if style.pattern is None and style.corner == "round" else begins | ends] = DISC

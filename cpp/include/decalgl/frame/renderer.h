@@ -85,6 +85,8 @@ public:
 
     // Milliseconds of the pass that overlay passes are measured against, at the current picture.
     double time_floor();
+    // Samples that the layers write in one more drawing of the current picture.
+    uint64_t count_fragments();
 
 private:
     std::shared_ptr<struct RendererState> state_;

@@ -18,9 +18,15 @@ enum class LineSolution : uint8_t {
     polar_offsets  // 4b with offsets in polar coordinates
 };
 
+enum class JointMethod : uint8_t {
+    none,         // 1: segments end across, and do not meet
+    own_corners,  // 3a: bevels with both segments' own corners
+    inner_meets   // 3b: where the inner borders meet; else their own corners
+};
+
 struct ClipmapOptions : TechniqueOptions {
     LineSolution solution = LineSolution::offsets;
-    bool inner_meets = true;    // bevelled joints by method 3b, else 3a
+    JointMethod joints = JointMethod::inner_meets;
     double bevel_below = 90.0;  // degrees between the segments of a joint; wider ones by method 2
     double thin_below = 1.5;    // texels: thinner lines are line primitives (algorithm 2)
     double widest_line = 10.0;  // texels of a line primitive, to which wider ones are clamped
@@ -32,8 +38,8 @@ struct ClipmapOptions : TechniqueOptions {
     int tiles_a_frame = 0;      // drawn anew for a picture; 0: as many as it needs
 
     auto members() const {
-        return std::make_tuple(solution, inner_meets, bevel_below, thin_below, widest_line, widen_from,
-                               widen_to, window, samples, anisotropy, tiles_a_frame);
+        return std::make_tuple(solution, joints, bevel_below, thin_below, widest_line, widen_from, widen_to,
+                               window, samples, anisotropy, tiles_a_frame);
     }
     bool equals(const TechniqueOptions& other) const override {
         const auto* options = dynamic_cast<const ClipmapOptions*>(&other);

@@ -201,13 +201,15 @@ public:
                         const TerrainView& terrain, const MemoryAccount& memory) = 0;
     // Throws Error(unsupported) for a way of anti-aliasing that it cannot do.
     virtual UpdateReport update(const View& view) = 0;
+    // Whether what the latest update made holds after the upload that followed: then the same view is not updated again.
+    virtual bool keeps_update() const { return false; }
     // Whether `draw` needs a depth attachment for itself, with whatever values.
     virtual bool needs_depth(const View&) const { return false; }
     // Whether `draw` and `draw_ids` need a depth attachment with a stencil.
     virtual bool needs_stencil(const View&) const { return false; }
-    // Whether what `draw` makes with coverage holds where the ground bends within a pixel. Else the frame draws the
-    // centres of samples there.
-    virtual bool filters_creases() const { return false; }
+    // Whether what `draw` writes follows from the slope of the ground as well as from the place on the map. Then samples of
+    // a pixel with a bend see the facets that they lie on, and not those of samples beside them.
+    virtual bool follows_slopes() const { return false; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture: all of it,
     // or over what view.has_below says is there.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;

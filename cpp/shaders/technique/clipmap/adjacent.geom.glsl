@@ -2,7 +2,7 @@
 //
 // Of a joint between two segments, the second one begins with its last pair of corners, and the first one ends with all.
 layout(lines_adjacency) in;
-layout(triangle_strip, max_vertices = 6) out;
+layout(triangle_strip, max_vertices = 10) out;
 
 in vec4 vertex_color[];
 flat out vec4 color;
@@ -10,22 +10,32 @@ flat out vec4 color;
 uniform float clip_per_half_width;
 uniform float bevel_cosine;  // of directions: below it a joint is bevelled
 uniform bool inner_meets;    // method 3b
+uniform bool has_joints;     // else method 1
 
 const float collinear = 1e-6;
 
 struct Pairs {
     vec4 first;  // left and right corner, in half widths from the vertex
+    vec4 second;
+    vec4 third;
     vec4 last;
-    bool are_two;
+    int count;  // 2: the first and the last
 };
 
 vec2 to_the_left(vec2 d) {
     return vec2(-d.y, d.x);
 }
 
+Pairs one(vec4 pair) {
+    return Pairs(pair, pair, pair, pair, 1);
+}
+
+Pairs two(vec4 first, vec4 last) {
+    return Pairs(first, first, last, last, 2);
+}
+
 Pairs across(vec2 d) {
-    vec4 pair = vec4(to_the_left(d), -to_the_left(d));
-    return Pairs(pair, pair, false);
+    return one(vec4(to_the_left(d), -to_the_left(d)));
 }
 
 // `shorter` of the two segments, in half widths.
@@ -36,12 +46,17 @@ Pairs joint(vec2 coming, vec2 going, float shorter) {
     vec2 after = to_the_left(going);
     if (abs(turn) < collinear && cosine > 0.0) return across(going);
     vec2 meeting = (before + after) / (1.0 + cosine);
-    vec4 both = vec4(meeting, -meeting);
-    if (cosine >= bevel_cosine) return Pairs(both, both, false);
-    float reach = abs(turn) / max(1.0 + cosine, 1e-6);
-    if (!inner_meets || reach > shorter) return Pairs(vec4(before, -before), vec4(after, -after), true);
-    if (turn > 0.0) return Pairs(vec4(meeting, -before), vec4(meeting, -after), true);
-    return Pairs(vec4(before, -meeting), vec4(after, -meeting), true);
+    bool meets = inner_meets && abs(turn) / max(1.0 + cosine, 1e-6) <= shorter;
+    bool is_left = turn > 0.0;
+    if (cosine < bevel_cosine) {
+        vec4 inner = meets ? vec4(meeting, meeting) : vec4(before, after);
+        if (is_left) return two(vec4(inner.xy, -before), vec4(inner.zw, -after));
+        return two(vec4(before, -inner.xy), vec4(after, -inner.zw));
+    }
+    if (meets || !inner_meets) return one(vec4(meeting, -meeting));
+    vec4 second = is_left ? vec4(vec2(0.0), -meeting) : vec4(before, vec2(0.0));
+    vec4 third = is_left ? vec4(-after, -after) : vec4(meeting, after);
+    return Pairs(vec4(before, -before), second, third, vec4(after, -after), 4);
 }
 
 void emit_pair(vec2 at, vec4 pair) {
@@ -61,11 +76,15 @@ void main() {
         vec2 along = (c - b) / own;
         Pairs begin = across(along);
         Pairs end = begin;
-        if (a != b) begin = joint(normalize(b - a), along, min(own, length(b - a)) / clip_per_half_width);
-        if (c != d) end = joint(along, normalize(d - c), min(own, length(d - c)) / clip_per_half_width);
+        if (a != b && has_joints) begin = joint(normalize(b - a), along, min(own, length(b - a)) / clip_per_half_width);
+        if (c != d && has_joints) end = joint(along, normalize(d - c), min(own, length(d - c)) / clip_per_half_width);
         emit_pair(b, begin.last);
         emit_pair(c, end.first);
-        if (end.are_two) emit_pair(c, end.last);
+        if (end.count == 4) {
+            emit_pair(c, end.second);
+            emit_pair(c, end.third);
+        }
+        if (end.count > 1) emit_pair(c, end.last);
         EndPrimitive();
     }
 }

@@ -8,6 +8,8 @@
 //     |   --|o    |     |
 //     +-----+-----+-----+
 //
+// WINDOWS    the list is longer than one block of the driver's
+//
 // A driver may end the loops of one run after so many turns in all: what is left is for the next run, which goes on where
 // `progress` says.
 #include "technique/dynamic_lines/bins_layout.h"
@@ -37,6 +39,30 @@ layout(std430, binding = 4) writeonly buffer Unfinished {
 layout(std430, binding = 2) writeonly buffer List {
     uint list[];
 };
+#ifdef WINDOWS
+layout(std430, binding = 5) writeonly buffer SecondList {
+    uint second_list[];
+};
+layout(std430, binding = 6) writeonly buffer ThirdList {
+    uint third_list[];
+};
+layout(std430, binding = 7) writeonly buffer FourthList {
+    uint fourth_list[];
+};
+uniform uint window;  // entries of each
+
+void set_entry(uint place, uint segment) {
+    uint at = place % window, part = place / window;
+    if (part == 0u) list[at] = segment;
+    else if (part == 1u) second_list[at] = segment;
+    else if (part == 2u) third_list[at] = segment;
+    else fourth_list[at] = segment;
+}
+#else
+void set_entry(uint place, uint segment) {
+    list[place] = segment;
+}
+#endif
 #endif
 
 void add_to_tile(ivec2 tile, uint run, uint segment) {
@@ -44,7 +70,7 @@ void add_to_tile(ivec2 tile, uint run, uint segment) {
     uint place = places[at];
     places[at] = place + 1u;
 #ifdef FILL
-    list[place] = segment;
+    set_entry(place, segment);
 #endif
 }
 

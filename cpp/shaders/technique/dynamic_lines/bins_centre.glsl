@@ -54,16 +54,16 @@ void lay_under(inout Centre centre, CentreSlot slot) {
     centre.sum += weight * vec4(slot.look.color.rgb, 1.0);
 }
 
-// A corner is looked at from the segment that ends there; a round one from both.
+// A corner is looked at from the segment that ends there.
 bool is_hit(SeenSegment seen, LineLook look, float whole) {
+    float share = foot_share(seen.segment);
     vec3 marks = vec3(1.0);
 #ifdef STYLED
-    float foot = share_on_map(seen.segment, foot_share(seen.segment)).x;
-    if (look.pattern != NO_PATTERN) marks = widths_along(seen.phases, foot);
+    if (look.pattern != NO_PATTERN) marks = widths_along(seen.phases, share_on_map(seen.segment, share).x);
 #endif
-    return covers(LinePart(seen.segment.from, seen.segment.to, seen.direction, seen.outgoing, begins(seen), finishes(seen),
-                           marks),
-                  look, whole);
+    LinePart part = LinePart(seen.segment.from, seen.segment.to, seen.direction, seen.outgoing, begins(seen), finishes(seen),
+                             marks);
+    return decides(part, share) && covers(part, look, whole);
 }
 
 Centre composed(ScreenPlane plane, ivec2 range) {

@@ -63,7 +63,7 @@ SeenSegment seen_segment(ScreenPlane plane, int index, LineLook look, float half
     seen.segment = on_screen(plane, ends);
     seen.direction = direction_of_segment(seen.segment);
     seen.outgoing = seen.direction;
-#if defined(JOINED) || defined(SIDES)
+#if defined(JOINED) || defined(SIDES) || !defined(COVERAGE)
     seen.outgoing = direction_of_segment(on_screen(plane, vec4(ends.zw, joints.next)));
 #endif
     seen.flags = joints.flags;

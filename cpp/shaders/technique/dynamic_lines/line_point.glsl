@@ -28,6 +28,16 @@ float distance_to_part(LinePart part) {
     return length(part.from + share * way);
 }
 
+// Whether the point is this part's to decide, and no neighbour's that comes nearer: a point beside the part, in the gap to the
+// next one, or beyond an end of the line. `share`: of the part, where its line comes nearest. So what the ground under the
+// nearest point says does not depend on where a line is cut.
+bool decides(LinePart part, float share) {
+    const float overlap = 1e-3;  // so that rounding opens no gap
+    bool before = share < 0.0 && !part.begins;
+    bool after = share > 1.0 && !part.ends && dot(part.to, part.outgoing) < -overlap;
+    return !before && !after;
+}
+
 // `whole`: half the width of all of the line.
 bool covers(LinePart part, LineLook look, float whole) {
     float half_width = whole * look.reach;

@@ -12,6 +12,7 @@
 // THESIS   widths by the distance from the eye; else by the depth, as the screen has it
 // JOINED   corners and caps that are not round
 // STYLED   patterns along lines, and colours across; goes with JOINED
+// SIDES    inset and offset outlines
 // LIMITS   widths that depend on the depth
 // LENS     other looks inside the lens
 #include "technique/dynamic_lines/line_looks.glsl"
@@ -27,7 +28,7 @@ flat in int segment_index[];
 
 flat out vec4 part_ends;    // on the map, relative to the base: from x, y; to x, y
 flat out vec4 part_joints;  // the vertices before and after
-flat out uvec2 part_line;   // slot; 1: begins here, 2: ends here
+flat out uvec2 part_line;   // slot; 1: begins here, 2: ends here, 4: its polygon lies to the right
 
 #ifdef STYLED
 flat out uvec2 part_arcs;
@@ -147,12 +148,14 @@ void main() {
     bool begins = segment.x == NO_VERTEX, ends = segment.w == NO_VERTEX;
     vec2 a = map_place(from), b = map_place(to);
     vec2 before = begins ? a : map_place(vertex_at(segment.x)), after = ends ? b : map_place(vertex_at(segment.w));
-    uint slot = line_at(from.line).slot;
+    LineRecord record = line_at(from.line);
+    uint slot = record.slot;
     vec2 along = length(b - a) > 1e-9 ? normalize(b - a) : vec2(1.0, 0.0);
     BoxReach reach = reach_of_box(a, b, slot);
     BoxEnd first = box_end(before, a, b, along, reach, begins), last = box_end(a, b, after, along, reach, ends);
     vec2 heights = ground_heights + vec2(-reach.across, reach.across);
-    uvec2 line = uvec2(slot, (begins ? 1u : 0u) | (ends ? 2u : 0u)), arcs = uvec2(0u);
+    uint flags = (begins ? 1u : 0u) | (ends ? 2u : 0u) | ((record.flags & LINE_INSIDE_RIGHT) != 0u ? 4u : 0u);
+    uvec2 line = uvec2(slot, flags), arcs = uvec2(0u);
 #ifdef STYLED
     arcs = arcs_of(segment, length(b - a), slot);
 #endif

@@ -4,6 +4,7 @@
 //     counts    entries of each pixel
 //     next      the entry after each entry, or list_end
 //     entries   which line, and its colour, straight alpha
+//     asides    with SIDES: of each entry what line_entry.glsl says
 //
 //     pixel   heads[pixel] ──▶ next[..] ──▶ next[..] ──▶ list_end
 //
@@ -29,6 +30,12 @@ layout(std430, binding = 4) buffer Totals {
     uint is_too_long;
     uint is_unsorted;
 };
+
+#ifdef SIDES
+layout(std430, binding = 6) buffer AsideWords {
+    uint asides[];
+};
+#endif
 
 uniform int picture_width;  // of the rectangle that is drawn
 

@@ -3,6 +3,8 @@
 //
 // A driver may end the loops of one run after so many turns in all: what is left is for the next run, which goes on
 // where `sorted` says.
+//
+// SIDES   inset and offset outlines, of which all entries together tell whether they are shown
 #include "technique/dynamic_lines/items.glsl"
 #include "technique/dynamic_lines/line_entry.glsl"
 #include "technique/dynamic_lines/lists_buffers.glsl"
@@ -21,7 +23,11 @@ struct Composite {
     float clear;  // how much of what lies behind shows through
 };
 
-void add_entry(inout Composite composite, uvec2 entry) {
+void add_entry(inout Composite composite, uint at) {
+    uvec2 entry = entries[at];
+#ifdef SIDES
+    if (asides[at] != shown_anyway) return;
+#endif
     if (!is_same_line(entry.x, composite.line)) composite.clear *= 1.0 - unpackUnorm4x8(entry.y).a;
     composite.line = entry.x;
 }
@@ -41,6 +47,11 @@ void select(uint here, uint count) {
     } while (--left > 0u && other != list_end);
     entries[best_at] = first;
     entries[here] = best;
+#ifdef SIDES
+    uint aside = asides[here];
+    asides[here] = asides[best_at];
+    asides[best_at] = aside;
+#endif
 }
 
 void main() {
@@ -52,14 +63,14 @@ void main() {
     uint here = heads[list], turns = done, passed = 0u;
     if (done > 0u) {
         do {
-            add_entry(composite, entries[here]);
+            add_entry(composite, here);
             here = next[here];
         } while (++passed < done);
     }
     bool finished;
     do {
         select(here, count - done);
-        add_entry(composite, entries[here]);
+        add_entry(composite, here);
         turns += count - done + 1u;
         here = next[here];
         ++done;

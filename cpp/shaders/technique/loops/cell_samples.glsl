@@ -1,5 +1,18 @@
-// The samples of a pixel's area, cell by cell: those in one cell walk its list together, a bit each. For opaque features.
+// The samples of a pixel's area, cell by cell: those in one cell walk its list together, a bit each.
 #include "shared/sample_offsets.glsl"
+
+// A bit for each of 32 samples.
+#define SAMPLE_MASK uint
+bool is_empty(uint samples) {
+    return samples == 0u;
+}
+int count_of(uint samples) {
+    return bitCount(samples);
+}
+bool has_sample(uint samples, int index) {
+    return (samples >> index & 1u) != 0u;
+}
+#include "shared/composed_samples.glsl"
 
 uniform float quantum;  // metres, a power of two
 
@@ -22,7 +35,7 @@ uint hits(vec4 edge, bool stroke, float half_width, vec2 place, mat2 foot) {
 
 // The sum of the colours that the samples `open` see.
 vec4 walk_together(Cell cell, vec2 place, mat2 foot, uint open) {
-    vec4 sum = vec4(0.0);
+    Samples samples = samples_of(open);
     int texel = cell.list;
     bool goes_on;
     do {
@@ -32,17 +45,16 @@ vec4 walk_together(Cell cell, vec2 place, mat2 foot, uint open) {
         uint inside = (header.x & CELL_INSIDE) != 0u ? 0xFFFFFFFFu : 0u;
         do {
             vec4 edge = uintBitsToFloat(texelFetch(cell_texels, texel));
-            uint found = texel < end ? hits(edge, stroke, uintBitsToFloat(header.w), place, foot) : 0u;
+            uint found = texel < end ? hits(edge, stroke, uintBitsToFloat(header.z), place, foot) : 0u;
             inside = stroke ? inside | found : inside ^ found;
             ++texel;
         } while (texel < end);
         texel = end;
-        vec4 color = unpackUnorm4x8(header.z);
-        sum += float(bitCount(inside & open)) * vec4(color.rgb * color.a, color.a);
-        open &= ~inside;
-        goes_on = open != 0u && (header.x & CELL_LAST) == 0u;
+        vec4 color = color_of(header.y);
+        lay_under(samples, color.a > 0.0 ? inside : 0u, color);
+        goes_on = samples.open != 0u && (header.x & CELL_LAST) == 0u;
     } while (goes_on);
-    return sum;
+    return samples.sum;
 }
 
 // The mean over the pixel's area; `foot`: quanta for a pixel to the right and up.

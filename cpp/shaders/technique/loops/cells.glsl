@@ -5,6 +5,7 @@
 uniform usamplerBuffer bucket_entries;
 uniform usamplerBuffer cell_entries;
 uniform usamplerBuffer cell_texels;
+uniform usamplerBuffer loops_styles;  // colour, bits of the half width in quanta
 uniform ivec2 grid_corner;  // of the first bucket, in quanta
 uniform ivec2 grid_size;    // buckets
 uniform int bucket_bits;    // a bucket is 2^bucket_bits quanta wide
@@ -47,6 +48,10 @@ float distance2(vec4 edge, vec2 point) {
     return dot(away, away);
 }
 
+vec4 color_of(uint slot) {
+    return unpackUnorm4x8(texelFetch(loops_styles, int(slot)).r);
+}
+
 struct Found {
     vec4 sum;   // premultiplied
     uint seen;  // the topmost slot that shows
@@ -63,7 +68,7 @@ Found walk(ivec2 point) {
         int end = place + int(header.x & CELL_EDGES);
         bool inside = (header.x & CELL_INSIDE) != 0u;
         bool stroke = (header.x & CELL_STROKE) != 0u;
-        float half_width = uintBitsToFloat(header.w);
+        float half_width = uintBitsToFloat(header.z);
         found.edges += end - place;
         // At its end, since some drivers go through a body once more for a test at its beginning.
         do {
@@ -81,8 +86,8 @@ Found walk(ivec2 point) {
             ++place;
         } while (place < end);
         place = end;
-        vec4 color = unpackUnorm4x8(header.z);
-        if (inside) {
+        vec4 color = color_of(header.y);
+        if (inside && color.a > 0.0) {
             if (found.seen == no_slot) found.seen = header.y;
             found.sum += (1.0 - found.sum.a) * vec4(color.rgb * color.a, color.a);
         }

@@ -7,11 +7,12 @@
 //
 // A list is texels of four words, groups from the topmost slot to the lowest:
 //
-//     header   flags | edges that follow, slot, colour, bits of the half width in quanta
+//     header   flags | edges that follow, slot, bits of the half width in quanta, 0
 //     edge     x, y of both ends, bits of floats, in quanta from the cell's lower left corner
 //
 // Edges of fills are cut at the cell's left and right border; the corner of the cell is CELL_INSIDE or not. Those of
-// strokes are whole, or end out of the stroke's reach. A stroke that is CELL_INSIDE covers all of the cell.
+// strokes are whole, or end out of the stroke's reach. A stroke that is CELL_INSIDE covers all of the cell. Colours are
+// looked up by slot (loops_styles, as in loops_layout.h), so others need no other cells.
 #ifndef DECALGL_LOOPS_CELLS_LAYOUT_H
 #define DECALGL_LOOPS_CELLS_LAYOUT_H
 

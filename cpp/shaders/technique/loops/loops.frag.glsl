@@ -10,6 +10,7 @@
 // CIRCLE             a lens on the map
 // SAMPLES            the mean of 32 points of the pixel's area, else its centre
 // TESTED, ACTIVE     how many primitives were looked at, or active, as colours
+// LENS               one side of the lens's border
 // IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
 #include "shared/ray.glsl"
 #include "technique/loops/walk.glsl"
@@ -22,6 +23,9 @@ uniform sampler2D surface_texture;
 #if defined(TESTED) || defined(ACTIVE)
 #include "technique/loops/heat.glsl"
 #endif
+#ifdef LENS
+#include "technique/loops/lens.glsl"
+#endif
 
 #ifdef IDS
 layout(location = 0) out uint id;
@@ -33,6 +37,10 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Position position = unpack_position(texelFetch(position_texture, pixel, 0));
     if (is_sky(position)) discard;
+#ifdef LENS
+    float share = share_of_side(pixel);
+    if (share == 0.0) discard;
+#endif
 #if defined(IDS)
     Found found = walk(lattice_point(position, vec2(0.0)));
     if (found.seen == no_slot) discard;
@@ -49,5 +57,8 @@ void main() {
     color = heat(walk(lattice_point(position, vec2(0.0))).active_count);
 #else
     color = walk(lattice_point(position, vec2(0.0))).sum;
+#endif
+#if defined(LENS) && !defined(IDS)
+    color *= share;
 #endif
 }

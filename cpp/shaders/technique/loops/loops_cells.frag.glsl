@@ -4,10 +4,10 @@
 //
 // FILLS, STROKES     what there is
 // SAMPLES            the mean of 32 points of the pixel's area, else its centre
-// TRANSLUCENT        some feature is: with SAMPLES, each walks by itself
+// TRANSLUCENT        some feature is
+// LENS               one side of the lens's border
 // TESTED, ACTIVE     how many edges were looked at, as colours: all of them are active
 // IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
-// Flags that mean nothing beside others.
 #ifdef IDS
 #undef SAMPLES
 #endif
@@ -22,6 +22,9 @@ uniform sampler2D surface_texture;
 #if defined(TESTED) || defined(ACTIVE)
 #include "technique/loops/heat.glsl"
 #endif
+#ifdef LENS
+#include "technique/loops/lens.glsl"
+#endif
 
 #ifdef IDS
 layout(location = 0) out uint id;
@@ -33,16 +36,14 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     Position position = unpack_position(texelFetch(position_texture, pixel, 0));
     if (is_sky(position)) discard;
+#ifdef LENS
+    float share = share_of_side(pixel);
+    if (share == 0.0) discard;
+#endif
 #ifdef SAMPLES
     vec4 surface = texelFetch(surface_texture, pixel, 0);
     mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
-#ifdef TRANSLUCENT
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < sample_count; ++i) sum += walk(lattice_point(position, foot * sample_offsets[i])).sum;
-    color = sum / float(sample_count);
-#else
     color = mean_of_samples(position, foot * quanta_per_metre);
-#endif
 #else
     Found found = walk(lattice_point(position, vec2(0.0)));
 #if defined(IDS)
@@ -53,5 +54,8 @@ void main() {
 #else
     color = found.sum;
 #endif
+#endif
+#if defined(LENS) && !defined(IDS)
+    color *= share;
 #endif
 }

@@ -7,6 +7,12 @@
 #include "technique/static_bvh/search.glsl"
 
 const uint no_line = 0xFFFFFFFFu;
+
+// Not 0 where the driver ended the search of some pixel.
+layout(std430, binding = 0) writeonly buffer Unfinished {
+    uint unfinished;
+};
+
 #ifdef NEAREST
 const int most_lines = 1;
 #else
@@ -97,5 +103,6 @@ vec4 lines_at(ivec2 point, mat2 foot) {
         advance(search, object, ended);
         if (object >= 0) keep(lines, candidate(object, point, foot));
     } while (!ended);
+    if (!ended) unfinished = 1u;
     return composed(lines);
 }

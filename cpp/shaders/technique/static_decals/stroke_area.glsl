@@ -117,12 +117,12 @@ uint next_alike(inout Group group, uint word, vec2 from, vec2 to) {
 }
 
 #ifdef JOINED
-// The corner before an edge, after one whose direction is `came`: what corner_share tells of a point.
+// The corner before an edge, after one whose direction is `came`: what corner_reach tells of a point.
 uvec2 samples_in_corner(Group group, vec2 from, vec2 came, Bar next, float half_width, uvec2 samples) {
     vec2 axis = normalize(came);
     float cosine = dot(axis, next.axis);
     bool is_bevel = has(group.style, STYLE_BEVEL);
-    bool pointed = is_bevel || (has(group.style, STYLE_MITER) && cosine >= group.style.miter_turn);
+    bool pointed = is_pointed(corner_of(group.style), axis, next.axis, -group.style.miter_turn);
     vec2 side = vec2(axis.y, -axis.x);
     Direction across = direction_of(side * group.foot);
     float s = dot(from, side);

@@ -1,13 +1,9 @@
 // Styles that several decals share (style_records.h): what of a stroke or a hatched fill covers a point, and in which colour.
 //
-// After Zechmeister 2020, section 3.6: a point is in a stroke when it is beside a segment or in the corner between two.
-// Each part answers with the share of the half width at which it would just cover the point, so that patterns that
-// change the width, and colours across it, need no tests of their own.
-//
-//           came  \  u
-//        ----------b           bevel   cut across u
-//                 / \          miter   within the half width of both lines
-//                /   \ goes    round   around b
+// After Zechmeister 2020, section 3.6: a point is in a stroke when it is beside a segment or in the corner between two
+// (stroke.glsl). Each part answers with the share of the half width at which it would just cover the point, so that
+// patterns that change the width, and colours across it, need no tests of their own.
+#include "shared/stroke.glsl"
 #include "technique/static_decals/style_records.h"
 
 uniform usamplerBuffer decal_kinds;
@@ -60,13 +56,10 @@ int mark_count(Style style) {
 float pattern_width(Style style, float periods) {
 #ifdef PATTERNS
     if (!has(style, STYLE_PATTERN)) return 1.0;
-    float at = fract(periods);
     float widest = -1.0;
     int i = 0;
     do {
-        vec4 mark = record_texel(style.record + 1 + i);
-        float share = (at - mark.x) / max(mark.y - mark.x, 1e-9);
-        if (share >= 0.0 && share <= 1.0) widest = max(widest, mix(mark.z, mark.w, share));
+        widest = max(widest, mark_width(record_texel(style.record + 1 + i), fract(periods)));
     } while (++i < mark_count(style));
     return widest;
 #else
@@ -97,18 +90,13 @@ float within_width(float share, float width) {
     return share <= width ? share : not_covered;
 }
 
-float corner_share(Style style, vec2 at, vec2 came, vec2 goes) {
-    float before = length(came), after = length(goes);
-    float cosine = dot(came, goes) / (before * after);
-    float apart = max(abs(came.x * at.y - came.y * at.x) / before, abs(goes.x * at.y - goes.y * at.x) / after);
-    if (has(style, STYLE_BEVEL)) {
-        vec2 u = came / before - goes / after;
-        float reach = length(u) * sqrt(max(0.5 * (1.0 + cosine), 0.0));
-        apart = reach > 0.0 ? max(apart, dot(at, u) / reach) : 1e9;
-    }
-    bool outside = dot(at, came) < 0.0 || dot(at, goes) > 0.0;
-    bool pointed = has(style, STYLE_BEVEL) || (has(style, STYLE_MITER) && cosine >= style.miter_turn);
-    return pointed ? (outside ? not_covered : apart / style.half_width) : length(at) / style.half_width;
+uint corner_of(Style style) {
+    return has(style, STYLE_BEVEL) ? bevel_corner : has(style, STYLE_MITER) ? miter_corner : round_corner;
+}
+
+// The half width from which on a corner covers a point. `at` leads from the corner to it.
+float joint_reach(Style style, vec2 at, vec2 came, vec2 goes) {
+    return corner_reach(corner_of(style), at, normalize(came), normalize(goes), -style.miter_turn);
 }
 
 // The share at which a joined stroke's next edge covers a point, with the corner before it. `from` and `to` lead from
@@ -123,8 +111,8 @@ float joined_share(Style style, Pen pen, vec2 from, vec2 to, float run) {
     bool beside = t >= 0.0 && t <= length_of_edge;
     float there = pen.periods + t / length_of_edge * run * style.periods_per_unit;
     float share = beside ? within_width(s / style.half_width, pattern_width(style, there)) : not_covered;
-    if (pen.has_came) share = min(share, within_width(corner_share(style, from, pen.came, goes), width));
-    return share;
+    float at_joint = pen.has_came ? joint_reach(style, from, pen.came, goes) / style.half_width : not_covered;
+    return min(share, within_width(at_joint, width));
 }
 
 // The same of a plain stroke: a bar, and the discs around both ends.
@@ -206,11 +194,8 @@ mat2 slope_metric = mat2(1.0);
 float slope_width = 1.0;
 
 void set_slope(vec2 gradient) {
-    float squared = dot(gradient, gradient);
-    float steep = sqrt(1.0 + squared);
-    float stretch = squared > 0.0 ? (steep - 1.0) / squared : 0.0;
-    slope_metric = mat2(1.0) + stretch * outerProduct(gradient, gradient);
-    slope_width = mix(1.0 / steep, 1.0, clamp(-forward.z, 0.0, 1.0));
+    slope_metric = tangent_lengths(gradient);
+    slope_width = thoeny_width(gradient, forward.z);
 }
 #endif
 

@@ -40,8 +40,6 @@ struct Nearest {
     float periods;
 };
 
-const float out_of_reach = 1e9;
-
 Nearest nearer(Nearest best, Group group) {
     vec2 from = group.before, goes = group.before - group.from;
     float run = length(goes);
@@ -50,10 +48,8 @@ Nearest nearer(Nearest best, Group group) {
     float inside = clamp(t, 0.0, run);
     float reach = run > 0.0 ? length(from - inside * (goes / run)) : length(from);
     if (joined && run > 0.0 && t != inside) reach = out_of_reach;
-    if (joined && run > 0.0 && group.pen_before.has_came) {
-        float share = corner_share(group.style, from, group.pen_before.came, goes);
-        reach = min(reach, share == not_covered ? out_of_reach : share * group.style.half_width);
-    }
+    if (joined && run > 0.0 && group.pen_before.has_came)
+        reach = min(reach, joint_reach(group.style, from, group.pen_before.came, goes));
     // A point where the pen is put down has no direction, and the edge from there is as near.
     if (run > 0.0 ? reach > best.reach : reach >= best.reach) return best;
     float along_map = run > 0.0 ? inside / run * group.run : 0.0;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "technique/clipmap/line_strips.h"
 #include "technique/clipmap/prepared_clipmap.h"
 #include "technique/plain_styles.h"
 #include "vector/clip_polygon.h"
@@ -12,7 +11,6 @@
 namespace decalgl::clipmap {
 namespace {
 
-constexpr int32_t chunk_segments = 64;
 // How far vertices may lie from the virtual texture's corner, in quanta: half its side beyond it on either side.
 constexpr double lattice_reach = 1 << (lattice_bits - 1);
 constexpr double farthest_place = lattice_reach + (1 << lattice_bits);
@@ -68,7 +66,7 @@ private:
         const Triangles& triangles = view.layer->triangles;
         const auto first = triangles.first_of[view.feature()], end = triangles.first_of[view.feature() + 1];
         for (int64_t t = first; t < end; t += chunk_segments) {
-            Chunk chunk{done_, false, {}, {static_cast<int32_t>(geometry_.fills.size()), 0}, {}, {}, {}};
+            Chunk chunk{done_, false, {}, {static_cast<int32_t>(geometry_.fills.size()), 0}, {}};
             const int64_t last = std::min<int64_t>(end, t + chunk_segments);
             for (int64_t each = t; each < last; ++each)
                 add_triangle(&triangles.coordinates[6 * static_cast<size_t>(each)], chunk);
@@ -163,18 +161,16 @@ private:
             line.size() >= 4 && line.front().x == line.back().x && line.front().y == line.back().y;
         const size_t first_chunk = geometry_.chunks.size();
         for (size_t first = 0; first + 1 < line.size(); first += chunk_segments) {
-            Chunk chunk{done_, true, {}, {}, {}, {}, {}};
+            Chunk chunk{done_, true, {}, {}, {}};
             const size_t last = std::min(line.size() - 1, first + chunk_segments);
             for (size_t i = first; i <= last; ++i)
                 chunk.box.add(lattice::LatticePoint{placed(line[i]).x, placed(line[i]).y});
             geometry_.chunks.push_back(chunk);
         }
-        Path path{done_, add_vertices(line, closed), static_cast<int32_t>(geometry_.pair_count), closed};
-        set_lines(path, first_chunk);
-        if (geometry_.has_mesh() || geometry_.has_offsets()) {
-            set_pairs(line, closed, first_chunk);
+        const Path path{done_, add_vertices(line, closed), static_cast<uint32_t>(first_chunk), closed};
+        set_lines(path);
+        if (geometry_.has_mesh() || geometry_.has_offsets())
             geometry_.paths.push_back(path);
-        }
     }
 
     // The line with the vertex before its first one and after its last: those of the other end of a ring, or the same.
@@ -187,28 +183,12 @@ private:
         return {first, static_cast<int32_t>(line.size())};
     }
 
-    void set_lines(const Path& path, size_t chunk) {
+    void set_lines(const Path& path) {
+        size_t chunk = path.first_chunk;
         for (int32_t first = 0; first + 1 < path.line.count; first += chunk_segments, ++chunk)
             geometry_.chunks[chunk].line = {
                 path.line.first + first,
                 std::min(path.line.count - first, static_cast<int32_t>(chunk_segments) + 1)};
-    }
-
-    // A joint between two chunks belongs to the first with all its pairs.
-    void set_pairs(const std::vector<Vector2>& line, bool closed, size_t chunk) {
-        const std::vector<CornerPair> pairs =
-            corner_pairs(line, closed, 1.0, {geometry_.options.bevel_below, geometry_.options.inner_meets});
-        const auto start = static_cast<int32_t>(geometry_.pair_count);
-        std::vector<int32_t> last_pair(line.size(), 0);
-        for (size_t i = 0; i < pairs.size(); ++i)
-            last_pair[pairs[i].vertex] = static_cast<int32_t>(i);
-        for (size_t first = 0; first + 1 < line.size(); first += chunk_segments, ++chunk) {
-            const size_t last = std::min(line.size() - 1, first + chunk_segments);
-            const int32_t begin = first == 0 ? 0 : last_pair[first], end = last_pair[last] + 1;
-            geometry_.chunks[chunk].mesh = {2 * (start + begin), 2 * (end - begin)};
-            geometry_.chunks[chunk].offsets = {start + begin, end - begin};
-        }
-        geometry_.pair_count += pairs.size();
     }
 
     const TechniqueInput& input_;

@@ -39,7 +39,8 @@ PreparedCounts PreparedClipmap::counts() const {
     const ClipmapGeometry& g = *geometry;
     const Tessellation& t = tessellation;
     return {g.features, g.segments, g.fills.size() + g.lines.size() + t.mesh.size() + t.offsets.size(),
-            g.bytes() + t.mesh.size_bytes() + t.offsets.size_bytes() + looks.size() * sizeof(PlainLook),
+            g.bytes() + t.pairs.size_bytes() + t.mesh.size_bytes() + t.offsets.size_bytes() +
+                looks.size() * sizeof(PlainLook),
             g.texture.texel(finest_level)};
 }
 

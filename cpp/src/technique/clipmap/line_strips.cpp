@@ -36,24 +36,39 @@ struct Joint {
             pairs.push_back({vertex, after, scaled(-1.0, after)});
             return;
         }
+        if (rule.joints == JointMethod::none) {
+            pairs.push_back({vertex, before, scaled(-1.0, before)});
+            pairs.push_back({vertex, scaled(-1.0, before), after});
+            pairs.push_back({vertex, after, scaled(-1.0, after)});
+            return;
+        }
         // The angle between the segments, seen from the vertex: 180 degrees where they go straight on.
         const bool bevel = cosine < 0.0 - std::cos(rule.bevel_below * pi / 180.0);
         const Vector2 meeting = scaled(1.0 / (1.0 + cosine), {before.x + after.x, before.y + after.y});
-        if (!bevel) {
+        const bool is_left = turn > 0.0;
+        const double reach = std::abs(turn) / std::max(1.0 + cosine, 1e-12);
+        const bool meets = rule.joints == JointMethod::inner_meets && reach <= shorter;
+        if (bevel) {
+            for (const Vector2& own : {before, after}) {
+                const Vector2& inner = meets ? meeting : own;
+                pairs.push_back({vertex, is_left ? inner : own, scaled(-1.0, is_left ? own : inner)});
+            }
+            return;
+        }
+        if (meets || rule.joints == JointMethod::own_corners) {
             pairs.push_back({vertex, meeting, scaled(-1.0, meeting)});
             return;
         }
-        const double reach = std::abs(turn) / std::max(1.0 + cosine, 1e-12);
-        if (!rule.inner_meets || reach > shorter) {
-            pairs.push_back({vertex, before, scaled(-1.0, before)});
-            pairs.push_back({vertex, after, scaled(-1.0, after)});
-        } else if (turn > 0.0) {
-            pairs.push_back({vertex, meeting, scaled(-1.0, before)});
-            pairs.push_back({vertex, meeting, scaled(-1.0, after)});
+        const Vector2 middle{0.0, 0.0};
+        pairs.push_back({vertex, before, scaled(-1.0, before)});
+        if (is_left) {
+            pairs.push_back({vertex, middle, scaled(-1.0, meeting)});
+            pairs.push_back({vertex, scaled(-1.0, after), scaled(-1.0, after)});
         } else {
-            pairs.push_back({vertex, before, scaled(-1.0, meeting)});
-            pairs.push_back({vertex, after, scaled(-1.0, meeting)});
+            pairs.push_back({vertex, before, middle});
+            pairs.push_back({vertex, meeting, after});
         }
+        pairs.push_back({vertex, after, scaled(-1.0, after)});
     }
 };
 

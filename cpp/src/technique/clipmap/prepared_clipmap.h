@@ -27,6 +27,8 @@ namespace decalgl::clipmap {
 
 using lattice::LatticeBox;
 
+constexpr int32_t chunk_segments = 64;
+
 struct PlacedVertex {
     int32_t x;
     int32_t y;
@@ -52,15 +54,13 @@ struct Chunk {
     LatticeBox box;
     VertexRange fill;
     VertexRange line;
-    VertexRange mesh;
-    VertexRange offsets;
 };
 
 // A line, or a ring that ends with its first vertex.
 struct Path {
     uint32_t decal;
-    VertexRange line;    // without the vertices more
-    int32_t first_pair;  // of corners: two vertices of the mesh, or one with offsets
+    VertexRange line;  // without the vertices more
+    uint32_t first_chunk;
     bool closed;
 };
 
@@ -75,7 +75,6 @@ struct ClipmapGeometry {
     std::vector<Path> paths;
     LargeArray<PlacedVertex> fills;
     LargeArray<PlacedVertex> lines;
-    size_t pair_count = 0;  // of corners, in all paths
     uint64_t features = 0;
     uint64_t segments = 0;
     MemoryCharge charge;
@@ -84,12 +83,15 @@ struct ClipmapGeometry {
     bool has_mesh() const;
     bool has_offsets() const;
     // Whether another width asks for other vertices: the corners of meshes move, and inner borders may meet or not.
-    bool is_tessellated_anew() const { return has_mesh() || (has_offsets() && options.inner_meets); }
+    bool is_tessellated_anew() const {
+        return has_mesh() || (has_offsets() && options.joints == JointMethod::inner_meets);
+    }
     uint64_t bytes() const;
 };
 
-// Lines as triangles, or ready to become some.
+// Lines as triangles, or ready to become some. A pair of corners is two vertices of the mesh, or one with offsets.
 struct Tessellation {
+    SharedArray<VertexRange> pairs;  // of each chunk
     SharedArray<PlacedVertex> mesh;
     SharedArray<OffsetVertex> offsets;
 };

@@ -105,7 +105,8 @@ TilePainter::Form TilePainter::form_of(const Chunk& chunk, double texels) const 
     return thin ? Form::thin_offsets : Form::offsets;
 }
 
-VertexRange TilePainter::range_of(const Chunk& chunk, Form form) {
+VertexRange TilePainter::range_of(size_t i, Form form) const {
+    const Chunk& chunk = prepared_->geometry->chunks[i];
     switch (form) {
         case Form::fill:
             return chunk.fill;
@@ -113,14 +114,14 @@ VertexRange TilePainter::range_of(const Chunk& chunk, Form form) {
             return chunk.line;
         case Form::mesh:
         case Form::wire:
-            return chunk.mesh;
+            return {2 * tessellation_.pairs[i].first, 2 * tessellation_.pairs[i].count};
         case Form::adjacent:
             return {chunk.line.first - 1, chunk.line.count + 2};
         case Form::offsets:
         case Form::thin_offsets:
             break;
     }
-    return chunk.offsets;
+    return tessellation_.pairs[i];
 }
 
 const TilePainter::Vertices& TilePainter::vertices_of(Form form) const {
@@ -164,7 +165,7 @@ void TilePainter::draw(const Tile& tile, const TileStore& store, gl::ProgramLibr
             draw_run(form, texels, tile, programs);
         form = own;
         texels = own_texels;
-        const VertexRange range = range_of(chunk, own);
+        const VertexRange range = range_of(i, own);
         firsts_.push_back(range.first);
         counts_.push_back(range.count);
     }
@@ -202,7 +203,8 @@ void TilePainter::draw_run(Form form, double texels, const Tile& tile, gl::Progr
         program.set("clip_per_half_width", static_cast<float>(texels / tile_texels));
     if (form == Form::adjacent) {
         program.set("bevel_cosine", static_cast<float>(-std::cos(options.bevel_below * pi / 180.0)));
-        program.set("inner_meets", options.inner_meets);
+        program.set("inner_meets", options.joints == JointMethod::inner_meets);
+        program.set("has_joints", options.joints != JointMethod::none);
     }
     const double widest = form == Form::wire ? 1.0 : options.widest_line;
     glLineWidth(static_cast<GLfloat>(std::clamp(texels, 1.0, std::max(1.0, widest))));

@@ -33,7 +33,7 @@ private:
     };
 
     Form form_of(const Chunk& chunk, double texels) const;
-    static VertexRange range_of(const Chunk& chunk, Form form);
+    VertexRange range_of(size_t chunk, Form form) const;
     void make_canvas(const MemoryAccount& memory);
     void draw_run(Form form, double texels, const Tile& tile, gl::ProgramLibrary& programs);
     const Vertices& vertices_of(Form form) const;

@@ -1,6 +1,7 @@
 #include "technique/dynamic_lines/bins.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "decalgl/core/error.h"
@@ -25,6 +26,9 @@ constexpr uint32_t most_counts_on_cpu = 1U << 19;
 // Mesa's software rasteriser ends the loops of one shader run after 65,535 turns in all, up to 16 invocations together. A row of
 // tiles is never left half done.
 constexpr int most_turns = 65535 / 16 - 4096 / TILE_SIDE;
+
+// Blocks that bin_tiles.comp.glsl writes the list through.
+constexpr uint64_t most_windows = 4;
 
 uint32_t divided(uint32_t count, uint32_t by) {
     return (count + by - 1) / by;
@@ -102,7 +106,7 @@ void LineBins::project(const View& view, const MatchedLines& lines, const Segmen
     looks.bind(program, 3);
     LatticeBase(lines.lattice, view).set(program);
     set_ground_slack(program, view);
-    if (lines.arcs) {
+    if (arcs_) {
         program.set("line_arcs", 4);
         lines.arcs.bind(4);
     }
@@ -128,11 +132,13 @@ void LineBins::run_tiles(const SegmentList& segments, const gl::Flags& flags, gl
     program.set("run_length", run_length_);
     segments.count.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
     places_.buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 1);
-    if (list_)
-        list_.buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 2);
     progress_.bind_base(GL_SHADER_STORAGE_BUFFER, 3);
     unfinished_.bind_base(GL_SHADER_STORAGE_BUFFER, 4);
     program.set("most_turns", most_turns);
+    if (flags.count("WINDOWS") > 0)
+        program.set("window",
+                    static_cast<uint32_t>(gl::Context::require_current().info().max_storage_block_bytes /
+                                          static_cast<long long>(sizeof(uint32_t))));
     progress_.clear();
     uint32_t is_unfinished = 0;
     do {
@@ -142,6 +148,18 @@ void LineBins::run_tiles(const SegmentList& segments, const gl::Flags& flags, gl
     } while (is_unfinished != 0);
 }
 
+// The list, in as many windows as the driver's blocks ask for.
+gl::Flags LineBins::bind_list() {
+    const auto window = static_cast<uint64_t>(gl::Context::require_current().info().max_storage_block_bytes);
+    const uint64_t bytes = list_.buffer().bytes();
+    constexpr std::array<GLuint, most_windows> bindings{2, 5, 6, 7};
+    for (size_t i = 0; i < bindings.size() && i * window < bytes; ++i)
+        glBindBufferRange(GL_SHADER_STORAGE_BUFFER, bindings[i], list_.buffer().id(),
+                          static_cast<GLintptr>(i * window),
+                          static_cast<GLsizeiptr>(std::min(window, bytes - i * window)));
+    return bytes > window ? gl::Flags{"FILL", "WINDOWS"} : gl::Flags{"FILL"};
+}
+
 // The list is as long as the counts say, and never shorter.
 void LineBins::sort(const SegmentList& segments, gl::ProgramLibrary& programs) {
     const auto counts = static_cast<uint32_t>(grid_.x * grid_.y) * run_count_;
@@ -149,21 +167,22 @@ void LineBins::sort(const SegmentList& segments, gl::ProgramLibrary& programs) {
     run_tiles(segments, {}, programs);
     sums_.run(places_.buffer(), counts + 1, programs);
     places_.buffer().read(sizeof(uint32_t) * counts, sizeof(uint32_t), &entry_count_);
-    const long long limit = gl::Context::require_current().info().max_storage_block_bytes;
-    const long long needed = 4LL * entry_count_;
-    if (needed > limit)
+    const gl::ContextInfo& info = gl::Context::require_current().info();
+    const auto limit =
+        std::min(most_windows * static_cast<uint64_t>(info.max_storage_block_bytes) / sizeof(uint32_t),
+                 static_cast<uint64_t>(info.max_texture_buffer_size));
+    if (entry_count_ > limit)
         throw Error(ErrorKind::memory,
                     "dynamic lines: in this view they fall into " + std::to_string(entry_count_) +
                         " tiles, more than this driver's buffers hold; give them a smaller width, or a "
                         "picture of fewer pixels");
     if (entry_count_ > list_.texels()) {
         list_ = gl::TextureBuffer();
-        list_ =
-            make_texels(memory_, GL_R32UI, 4,
-                        std::min<size_t>(entry_count_ + entry_count_ / 2, static_cast<size_t>(limit / 4)));
+        list_ = make_texels(memory_, GL_R32UI, 4,
+                            std::min<uint64_t>(uint64_t{entry_count_} + entry_count_ / 2, limit));
     }
     if (entry_count_ > 0)
-        run_tiles(segments, {"FILL"}, programs);
+        run_tiles(segments, bind_list(), programs);
 }
 
 uint64_t LineBins::bytes() const {

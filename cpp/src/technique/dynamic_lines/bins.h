@@ -15,6 +15,8 @@ public:
     // Sorts what a view leaves of the lines. Throws Error(memory).
     void update(const View& view, const MatchedLines& lines, const SegmentList& segments,
                 const LineLooks& looks, gl::ProgramLibrary& programs);
+    // In place of `update`, for a view of other places.
+    void see_nothing() { entry_count_ = 0; }
     void draw(const View& view, const GBufferView& gbuffer, const LineLooks& looks,
               gl::ProgramLibrary& programs) const;
     void draw_ids(const View& view, const GBufferView& gbuffer, const LineLooks& looks,
@@ -29,6 +31,7 @@ private:
                  const LineLooks& looks, gl::ProgramLibrary& programs);
     void sort(const SegmentList& segments, gl::ProgramLibrary& programs);
     void run_tiles(const SegmentList& segments, const gl::Flags& flags, gl::ProgramLibrary& programs);
+    gl::Flags bind_list();
     void draw_tiles(gl::Flags flags, const View& view, const GBufferView& gbuffer, const LineLooks& looks,
                     gl::ProgramLibrary& programs) const;
     void bind(gl::Program& program, const View& view, const GBufferView& gbuffer,

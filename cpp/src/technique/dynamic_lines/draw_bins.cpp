@@ -10,8 +10,9 @@ namespace decalgl {
 
 namespace {
 
-constexpr GLuint half_planes_unit = 8;  // beyond those of frame's own programs
-constexpr GLuint arcs_unit = 7;
+// Beyond those of frame's own programs, and of looks and ground.
+constexpr GLuint half_planes_unit = 8;
+constexpr GLuint arcs_unit = 11;
 
 }  // namespace
 

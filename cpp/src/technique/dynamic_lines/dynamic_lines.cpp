@@ -22,11 +22,15 @@ void DynamicLines::upload(std::shared_ptr<const Prepared> prepared, std::shared_
     auto next = std::static_pointer_cast<const PreparedLines>(std::move(prepared));
     auto next_lens = std::static_pointer_cast<const PreparedLines>(std::move(lens));
     const bool has_same_lines = prepared_ && prepared_->vertices.data() == next->vertices.data();
+    keeps_update_ = has_same_lines && differ_in_color_alone(*prepared_, *next) && !lens_ == !next_lens &&
+                    (!lens_ || differ_in_color_alone(*lens_, *next_lens));
     if (!has_same_lines) {
         prepared_.reset();
         segments_.reset();
         lines_ = MatchedLines();
-        if (next->shows_anything()) {
+        blocks_ = LineBlocks();
+        if (next->shows_anything() || (next_lens && next_lens->shows_anything())) {
+            blocks_ = LineBlocks(*next);
             lines_ = match_lines(*next, terrain, memory, programs_);
             ground_heights_ = {terrain.samples->lowest(), terrain.samples->highest()};
             segments_ = std::make_unique<SegmentUpdate>(lines_, next->cell, ground_heights_, memory);
@@ -51,11 +55,6 @@ LineMethod DynamicLines::method_for(const View& view) const {
             ErrorKind::unsupported,
             "dynamic lines by lists have no anti-aliasing by coverage; choose antialias 'fxaa', 'ssaa', "
             "'msaa' or 'none', or method 'bins' with width_rule 'screen'");
-    const bool has_sides = looks_.summary().has_sides;
-    if (has_sides && (needs_lists || prepared_->method == LineMethod::lists))
-        throw Error(ErrorKind::unsupported,
-                    "dynamic lines by lists have outlines on both sides of the border alone; give them "
-                    "mode 'normal', or choose method 'bins' with width_rule 'screen'");
     if (needs_lists && prepared_->method == LineMethod::bins)
         throw Error(ErrorKind::unsupported,
                     "dynamic lines: method 'bins' has no width_rule 'thesis'; choose method 'lists'");
@@ -72,10 +71,15 @@ UpdateReport DynamicLines::update(const View& view) {
     UpdateReport report;
     report.pieces = lines_.segment_count;
     if (segments_) {
-        const SegmentList& seen = segments_->run(view, looks_.reach(), programs_);
         method_ = method_for(view);
-        if (method_ == LineMethod::bins)
-            bins_->update(view, lines_, seen, looks_, programs_);
+        if (blocks_.may_show(view, ground_heights_, looks_.reach())) {
+            const SegmentList& seen = segments_->run(view, looks_.reach(), programs_);
+            if (method_ == LineMethod::bins)
+                bins_->update(view, lines_, seen, looks_, programs_);
+        } else {
+            segments_->see_nothing();
+            bins_->see_nothing();
+        }
         segments_->report(report);
     }
     report.bytes += lines_.vertices.buffer().bytes() + lines_.lines.buffer().bytes() + looks_.bytes() +

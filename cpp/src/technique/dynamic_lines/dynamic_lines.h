@@ -5,6 +5,7 @@
 
 #include "gl/program.h"
 #include "technique/dynamic_lines/bins.h"
+#include "technique/dynamic_lines/line_blocks.h"
 #include "technique/dynamic_lines/line_looks.h"
 #include "technique/dynamic_lines/line_set.h"
 #include "technique/dynamic_lines/lists.h"
@@ -23,8 +24,8 @@ public:
     void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                 const TerrainView& terrain, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
-    // Widths are the screen's, whatever the ground does.
-    bool filters_creases() const override { return true; }
+    bool keeps_update() const override { return keeps_update_; }
+    bool follows_slopes() const override { return true; }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
@@ -36,11 +37,13 @@ private:
     MemoryAccount memory_;
     std::shared_ptr<const PreparedLines> prepared_;
     std::shared_ptr<const PreparedLines> lens_;  // null without one
+    LineBlocks blocks_;
     MatchedLines lines_;
     std::unique_ptr<SegmentUpdate> segments_;  // null without lines
     LineLooks looks_;
     glm::vec2 ground_heights_{0.0F};        // the lowest and the highest of the terrain
     LineMethod method_ = LineMethod::bins;  // of the latest view
+    bool keeps_update_ = false;             // the latest upload changed colours alone
     std::unique_ptr<LineBins> bins_;
     std::unique_ptr<LineLists> lists_;
 };

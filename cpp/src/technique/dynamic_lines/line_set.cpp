@@ -56,7 +56,7 @@ gl::TextureBuffer make_records(const MemoryAccount& memory, const std::string& n
 // Of each line the metres that 2^32 in `arc` stand for; empty where none has a pattern.
 std::vector<float> arc_lengths(const PreparedLines& prepared) {
     std::vector<float> lengths;
-    if (!prepared.summary.is_styled)
+    if (!prepared.summary.has_arcs)
         return lengths;
     for (const LineRecord& line : prepared.lines)
         lengths.push_back(static_cast<float>(arc_length(prepared.styles[line.slot], prepared.patterns)));

@@ -30,7 +30,7 @@ struct MatchedLines {
     LineLattice lattice;
     gl::TextureBuffer vertices;             // MatchedVertex, RGBA32UI
     gl::TextureBuffer lines;                // LineRecord, counted in matched vertices, RGBA32UI
-    gl::TextureBuffer arcs;                 // of each vertex, R32UI; none where no line has a pattern
+    gl::TextureBuffer arcs;                 // of each vertex, R32UI; none where no style asks for them
     const gl::Texture2D* ground = nullptr;  // samples of the terrain
     uint32_t vertex_count = 0;
     uint32_t line_count = 0;

@@ -32,6 +32,12 @@ uint32_t pixels_of(const GBufferView& gbuffer) {
     return static_cast<uint32_t>(gbuffer.surface->width()) * static_cast<uint32_t>(gbuffer.surface->height());
 }
 
+gl::Flags with_sides(const ListedLines& listed, gl::Flags flags) {
+    if (listed.looks->summary().has_sides)
+        flags.insert("SIDES");
+    return flags;
+}
+
 [[noreturn]] void refuse(const std::string& what) {
     throw Error(ErrorKind::memory, "dynamic lines, method 'lists': " + what +
                                        "; use method 'bins', narrower lines or a smaller picture");
@@ -92,19 +98,22 @@ void LineLists::make_room_for_pixels(const GBufferView& gbuffer) {
 }
 
 // For those of the latest try and half as many more.
-void LineLists::make_room_for_entries() {
+void LineLists::make_room_for_entries(bool has_sides) {
     const auto limit = static_cast<uint64_t>(gl::Context::require_current().info().max_storage_block_bytes);
     const uint64_t most = limit / entry_bytes;
     if (entry_count_ > most)
         refuse("this view needs " + std::to_string(entry_count_) + " entries, more than the " +
                std::to_string(most) + " that this driver binds at once");
     const uint64_t wanted = std::max<uint64_t>(first_room_, entry_count_ + uint64_t{entry_count_} / 2);
-    next_ = gl::TextureBuffer();
-    entries_ = gl::TextureBuffer();
+    for (gl::TextureBuffer* buffer : {&next_, &entries_, &asides_})
+        *buffer = gl::TextureBuffer();
     entry_room_ = static_cast<uint32_t>(std::min(std::max<uint64_t>(wanted, 1), most));
     next_ = gl::TextureBuffer::create(memory_, "dynamic: lists", GL_R32UI,
                                       sizeof(uint32_t) * size_t{entry_room_});
     entries_ = gl::TextureBuffer::create(memory_, "dynamic: lists", GL_RG32UI, entry_bytes * entry_room_);
+    if (has_sides)
+        asides_ = gl::TextureBuffer::create(memory_, "dynamic: lists", GL_R32UI,
+                                            sizeof(uint32_t) * size_t{entry_room_});
 }
 
 void LineLists::bind_lists() const {
@@ -112,6 +121,8 @@ void LineLists::bind_lists() const {
                                    &entries_.buffer(), &totals_, &sorted_};
     for (GLuint i = 0; i < 6; ++i)
         buffers[i]->bind_base(GL_SHADER_STORAGE_BUFFER, i);
+    if (asides_)
+        asides_.buffer().bind_base(GL_SHADER_STORAGE_BUFFER, 6);
 }
 
 void LineLists::fill_once(const View& view, const GBufferView& gbuffer, const ListedLines& listed,
@@ -121,7 +132,7 @@ void LineLists::fill_once(const View& view, const GBufferView& gbuffer, const Li
     const Totals none;
     totals_.update(0, sizeof(none), &none);
     bind_lists();
-    gl::Flags flags = listed.looks->flags();
+    gl::Flags flags = with_sides(listed, listed.looks->flags());
     if (listed.width_rule == LineWidthRule::thesis)
         flags.insert("THESIS");
     gl::Program& program = programs.get("dynamic_list_boxes", flags);
@@ -139,7 +150,7 @@ void LineLists::fill_once(const View& view, const GBufferView& gbuffer, const Li
         program.set("lens_texture", 5);
         gbuffer.lens->bind(5);
     }
-    if (listed.lines->arcs) {
+    if (listed.looks->summary().is_styled) {
         program.set("line_arcs", 6);
         listed.lines->arcs.bind(6);
     }
@@ -162,12 +173,13 @@ void LineLists::fill(const View& view, const GBufferView& gbuffer, const ListedL
     const gl::PassTimer timer(view.timings, "dynamic: lists");
     make_room_for_pixels(gbuffer);
     entry_count_ = 0;
-    if (!entries_)
-        make_room_for_entries();
+    const bool has_sides = listed.looks->summary().has_sides;
+    if (!entries_ || (has_sides && !asides_))
+        make_room_for_entries(has_sides);
     Totals totals;
     do {
         if (entry_count_ > entry_room_)
-            make_room_for_entries();
+            make_room_for_entries(has_sides);
         fill_once(view, gbuffer, listed, programs);
         totals_.read(0, sizeof(totals), &totals);
         entry_count_ = totals.entries;
@@ -176,11 +188,12 @@ void LineLists::fill(const View& view, const GBufferView& gbuffer, const ListedL
         refuse("more than " + std::to_string(longest_list) + " segments lie at one pixel of this view");
 }
 
-void LineLists::sort(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
+void LineLists::sort(const View& view, const GBufferView& gbuffer, const gl::Flags& flags,
+                     gl::ProgramLibrary& programs) {
     const gl::PassTimer timer(view.timings, "dynamic: sort");
     fill_words(sorted_, 0);
     bind_lists();
-    gl::Program& program = programs.get("dynamic_list_sort");
+    gl::Program& program = programs.get("dynamic_list_sort", flags);
     program.set("most_turns", most_turns);
     Totals totals;
     do {
@@ -201,6 +214,10 @@ void LineLists::show(const GBufferView& gbuffer, const gl::Flags& flags, gl::Pro
         program.set(name, unit);
         buffer->bind(static_cast<GLuint>(unit++));
     }
+    if (flags.count("SIDES") != 0) {
+        program.set("list_asides", unit);
+        asides_.bind(static_cast<GLuint>(unit));
+    }
     program.set("picture_width", gbuffer.surface->width());
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -220,9 +237,9 @@ void LineLists::draw(const View& view, const GBufferView& gbuffer, const ListedL
         const bool is_union = summary.has_one_look && !summary.has_translucency;
         fill(view, gbuffer, listed, programs);
         if (!is_union)
-            sort(view, gbuffer, programs);
+            sort(view, gbuffer, with_sides(listed, {}), programs);
         const gl::PassTimer timer(view.timings, "dynamic: show");
-        show(gbuffer, is_union ? gl::Flags{"UNION"} : gl::Flags{}, programs);
+        show(gbuffer, is_union ? gl::Flags{"UNION"} : with_sides(listed, {}), programs);
     }
     glDisable(GL_BLEND);
 }
@@ -234,13 +251,13 @@ void LineLists::draw_ids(const View& view, const GBufferView& gbuffer, const Lis
     if (listed.segments->most == 0)
         return;
     fill(view, gbuffer, listed, programs);
-    show(gbuffer, {"IDS"}, programs);
+    show(gbuffer, with_sides(listed, {"IDS"}), programs);
 }
 
 uint64_t LineLists::bytes() const {
     uint64_t bytes = 0;
-    for (const gl::Buffer* buffer :
-         {&heads_.buffer(), &counts_, &sorted_, &next_.buffer(), &entries_.buffer(), &totals_})
+    for (const gl::Buffer* buffer : {&heads_.buffer(), &counts_, &sorted_, &next_.buffer(),
+                                     &entries_.buffer(), &asides_.buffer(), &totals_})
         bytes += buffer->bytes();
     return bytes;
 }

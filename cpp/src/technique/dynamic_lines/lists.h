@@ -43,10 +43,11 @@ private:
               gl::ProgramLibrary& programs);
     void fill_once(const View& view, const GBufferView& gbuffer, const ListedLines& listed,
                    gl::ProgramLibrary& programs);
-    void sort(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs);
+    void sort(const View& view, const GBufferView& gbuffer, const gl::Flags& flags,
+              gl::ProgramLibrary& programs);
     void show(const GBufferView& gbuffer, const gl::Flags& flags, gl::ProgramLibrary& programs) const;
     void make_room_for_pixels(const GBufferView& gbuffer);
-    void make_room_for_entries();
+    void make_room_for_entries(bool has_sides);
     void bind_lists() const;
 
     MemoryAccount memory_;
@@ -54,6 +55,7 @@ private:
     gl::TextureBuffer heads_;  // of each pixel
     gl::Buffer counts_, sorted_;
     gl::TextureBuffer next_, entries_;
+    gl::TextureBuffer asides_;  // of each entry, where there are inset or offset outlines
     gl::Buffer totals_;
     uint32_t pixel_room_ = 0;
     uint32_t entry_room_ = 0;

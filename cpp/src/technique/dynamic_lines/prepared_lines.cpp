@@ -1,5 +1,6 @@
 #include "technique/dynamic_lines/prepared_lines.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -48,6 +49,17 @@ bool looks_alike(const LineStyle& a, const LineStyle& b) {
 }
 
 }  // namespace
+
+bool differ_in_color_alone(const PreparedLines& a, const PreparedLines& b) {
+    const auto in_black = [](LineStyle style) {
+        style.color = style.color >> 24 != 0 ? 0xFF000000U : 0;
+        style.own_color = style.band_color = 0;
+        return style;
+    };
+    return std::equal(
+        a.styles.begin(), a.styles.end(), b.styles.begin(), b.styles.end(),
+        [&](const LineStyle& x, const LineStyle& y) { return looks_alike(in_black(x), in_black(y)); });
+}
 
 LinePurpose purpose_of(const LineStyle& style, uint32_t slot, Span<const PatternTexel> patterns) {
     return {slot, arc_length(style, patterns), (style.kind & (INSIDE_ONLY | OUTSIDE_ONLY)) != 0};
@@ -100,13 +112,15 @@ void PreparedLines::summarise() {
     const LineStyle* first = nullptr;
     for (const LineStyle& style : styles) {
         const uint32_t alpha = style.color >> 24;
+        const bool is_styled = style.pattern != NO_PATTERN || (style.kind & IS_BAND) != 0;
+        summary.has_arcs |= is_styled;
         if (alpha == 0) {
             summary.has_hidden = true;
             continue;
         }
         summary.has_shown = true;
         summary.has_translucency |= alpha != 255;
-        summary.is_styled |= style.pattern != NO_PATTERN || (style.kind & IS_BAND) != 0;
+        summary.is_styled |= is_styled;
         summary.has_sides |= (style.kind & (INSIDE_ONLY | OUTSIDE_ONLY)) != 0;
         summary.is_joined |= (style.kind & (CORNER_MASK | 3U << CAP_SHIFT)) != 0;
         summary.has_limits |= (style.kind & (IN_METRES | HAS_LIMITS)) != 0;

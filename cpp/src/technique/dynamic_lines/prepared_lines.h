@@ -25,6 +25,7 @@ struct LineSummary {
     bool has_one_look = true;  // of all that is shown
     bool is_joined = false;    // some corner or cap is not round, or has a place in a pattern
     bool is_styled = false;    // patterns, or colours across
+    bool has_arcs = false;     // some style is such, and be it hidden: vertices know their way along the line
     bool has_sides = false;    // inset or offset outlines
     bool has_limits = false;   // or metres
 };
@@ -66,6 +67,9 @@ public:
 };
 
 LinePurpose purpose_of(const LineStyle& style, uint32_t slot, Span<const PatternTexel> patterns);
+
+// Of lines with the same vertices: whether all else that shows is as it was, and in the same places.
+bool differ_in_color_alone(const PreparedLines& a, const PreparedLines& b);
 
 // Throws Error(memory), Error(unsupported), Error(cancelled).
 std::unique_ptr<PreparedLines> prepare_lines(const TechniqueInput& input, Progress& progress);

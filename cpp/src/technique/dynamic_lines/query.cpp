@@ -124,10 +124,14 @@ private:
     bool covers(const LineRecord& line, uint32_t segment, double reach) const {
         const Vector2 a = offset(line, segment), b = offset(line, segment + 1);
         const ScreenSegment seen = on_screen(point_, a, b);
-        if (!seen.seen || !is_on_ground(seen, a, b))
+        if (!seen.seen)
             return false;
         const bool closed = (line.flags & LINE_CLOSED) != 0;
         const bool begins = segment == 0 && !closed, ends = segment + 2 == line.count && !closed;
+        // Beyond an end, a neighbour comes nearer or the corner at its end does.
+        const double share = foot_share(seen);
+        if ((share < 0.0 && !begins) || !is_on_ground(seen, a, b))
+            return false;
         const auto corner = static_cast<Corner>(style_.kind & CORNER_MASK);
         const auto cap = static_cast<Cap>(style_.kind >> CAP_SHIFT & 3U);
         const Vector2 direction = unit({seen.to.x - seen.from.x, seen.to.y - seen.from.y});
@@ -135,18 +139,17 @@ private:
         const Vector2 from_a{-seen.from.x, -seen.from.y}, from_b{-seen.to.x, -seen.to.y};
         const double bar =
             bar_reach(from_a, from_b, direction, {begins ? square : overlap, ends ? square : overlap});
-        const double at_a = begins                    ? cap_reach(cap, from_a)
-                            : corner == Corner::round ? length(from_a)
-                                                      : out_of_reach;
+        const double at_a = begins ? cap_reach(cap, from_a) : out_of_reach;
         const Vector2 next = ends ? direction : outgoing(line, segment + 1, b);
+        if (share > 1.0 && !ends && dot(from_b, next) > 0.0)
+            return false;
         const double at_b =
             ends ? cap_reach(cap, from_b)
                  : corner_reach(corner, from_b, direction, next, std::cos(miter_limit(style_)));
         const double half_width = reach * half_width_;
         if (style_.pattern == NO_PATTERN)
             return std::min(bar, std::min(at_a, at_b)) <= half_width;
-        const Marks marks =
-            marks_along(line, segment, length({b.x - a.x, b.y - a.y}), seen.on_map(foot_share(seen)));
+        const Marks marks = marks_along(line, segment, length({b.x - a.x, b.y - a.y}), seen.on_map(share));
         const auto within = [&](double gauge, double mark) {
             return gauge <= std::min(half_width, half_width_ * mark);
         };

@@ -25,6 +25,9 @@ public:
     // Throws Error(memory).
     const SegmentList& run(const View& view, LineReach reach, gl::ProgramLibrary& programs);
 
+    // In place of `run`, for a view of other places.
+    void see_nothing() { list_.most = kept_count_ = 0; }
+
     // What the latest view left.
     const SegmentList& segments() const { return list_; }
     // Vertices before and after the simplification, segments after culling, and bytes of GL memory.

@@ -3,7 +3,7 @@
 namespace decalgl::loops {
 
 LargeArray<Step> steps_of(const Arcs& arcs, const Refinement& refinement, unsigned threads) {
-    LargeArray<Step> steps(arcs.points.size());
+    LargeArray<Step> steps(arcs.points.size(), Step{0, 0});
     LargeArray<uint32_t> places(arcs.points.size());
     parallel_for(arcs.count(), 64, threads, [&](size_t begin, size_t end) {
         for (size_t arc = begin; arc < end; ++arc) {

@@ -18,7 +18,7 @@ struct Step {
     uint32_t size;
 };
 
-// Of arc a from begin(a) on; the last two of each arc are unused.
+// Of arc a from begin(a) on; the last two of each arc, and those of frames, are unused and 0.
 LargeArray<Step> steps_of(const Arcs& arcs, const Refinement& refinement, unsigned threads);
 
 struct ActiveArcs {
@@ -50,7 +50,7 @@ private:
 
 // `is_active(point, arc)`; frames have nothing but their ends.
 template <typename IsActive>
-ActiveArcs active_arcs(const Arcs& arcs, const LargeArray<Step>& steps, unsigned threads,
+ActiveArcs active_arcs(const KeptArcs& arcs, Span<const Step> steps, unsigned threads,
                        const IsActive& is_active) {
     constexpr size_t grain = 256;
     struct Block {

@@ -270,4 +270,16 @@ Arcs make_arcs(const Chains& chains, const NodedChains& noded, const Locations& 
     return arcs;
 }
 
+KeptArcs kept(Arcs&& arcs) {
+    KeptArcs result;
+    result.points = std::move(arcs.points);
+    result.offsets = std::move(arcs.offsets);
+    result.kinds = std::move(arcs.kinds);
+    result.fill_offsets = std::move(arcs.fill_offsets);
+    result.stroke_offsets = std::move(arcs.stroke_offsets);
+    result.fill_arcs = std::move(arcs.fill_arcs);
+    result.stroke_arcs = std::move(arcs.stroke_arcs);
+    return result;
+}
+
 }  // namespace decalgl::loops

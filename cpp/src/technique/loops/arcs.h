@@ -11,6 +11,7 @@
 
 #include <vector>
 
+#include "decalgl/core/shared_array.h"
 #include "technique/loops/noding.h"
 
 namespace decalgl::loops {
@@ -21,26 +22,16 @@ enum class ArcKind : uint8_t {
     frame,  // junctions of a ring, from the first to the same: its vertices stay
 };
 
-struct Arcs {
-    LargeArray<LatticePoint> points;  // arc after arc, with both ends
-    LargeArray<uint32_t> locations;   // of the points
-    std::vector<uint32_t> offsets = {0};
-    std::vector<ArcKind> kinds;
+// Lists of arcs, in arrays that grow while they are made or in others that stay as they are.
+template <typename Arrays>
+struct ArcTable {
+    typename Arrays::template Large<LatticePoint> points;  // arc after arc, with both ends
+    typename Arrays::template Small<uint32_t> offsets;
+    typename Arrays::template Small<ArcKind> kinds;
 
     // The arcs of each feature: those that bound its inside, and those that its stroke follows.
-    std::vector<uint64_t> fill_offsets, stroke_offsets;
-    std::vector<uint32_t> fill_arcs, stroke_arcs;
-
-    // The arcs that a chain goes along, twice their number, and one more where it goes backwards.
-    std::vector<uint64_t> chain_offsets;
-    std::vector<uint32_t> chain_arcs;
-
-    // Frees what only preparing needs.
-    void drop_chains() {
-        locations = {};
-        chain_offsets = {};
-        chain_arcs = {};
-    }
+    typename Arrays::template Small<uint64_t> fill_offsets, stroke_offsets;
+    typename Arrays::template Small<uint32_t> fill_arcs, stroke_arcs;
 
     size_t count() const { return kinds.size(); }
     uint32_t begin(size_t arc) const { return offsets[arc]; }
@@ -53,12 +44,38 @@ struct Arcs {
     Span<const uint32_t> stroke_of(size_t feature) const { return of(feature, stroke_offsets, stroke_arcs); }
 
 private:
-    static Span<const uint32_t> of(size_t feature, const std::vector<uint64_t>& begins,
-                                   const std::vector<uint32_t>& arcs) {
+    static Span<const uint32_t> of(size_t feature, Span<const uint64_t> begins, Span<const uint32_t> arcs) {
         const auto begin = static_cast<size_t>(begins[feature]);
-        return Span<const uint32_t>(arcs).subspan(begin, static_cast<size_t>(begins[feature + 1]) - begin);
+        return arcs.subspan(begin, static_cast<size_t>(begins[feature + 1]) - begin);
     }
 };
+
+struct GrowingArrays {
+    template <typename T>
+    using Large = LargeArray<T>;
+    template <typename T>
+    using Small = std::vector<T>;
+};
+struct SharedArrays {
+    template <typename T>
+    using Large = SharedArray<T>;
+    template <typename T>
+    using Small = SharedArray<T>;
+};
+
+// As they are made, with what only preparing needs.
+struct Arcs : ArcTable<GrowingArrays> {
+    Arcs() { offsets = {0}; }
+
+    LargeArray<uint32_t> locations;  // of the points
+    // The arcs that a chain goes along, twice their number, and one more where it goes backwards.
+    std::vector<uint64_t> chain_offsets;
+    std::vector<uint32_t> chain_arcs;
+};
+
+// What views need of them.
+using KeptArcs = ArcTable<SharedArrays>;
+KeptArcs kept(Arcs&& arcs);
 
 // What passes through a location: where it is more than one thing, a junction.
 std::vector<uint8_t> find_junctions(const Chains& chains, const NodedChains& noded, size_t locations,

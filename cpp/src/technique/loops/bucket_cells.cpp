@@ -57,6 +57,8 @@ void BucketBuilder::add(LatticePoint corner, Span<const BucketSlot> slots, Span<
     cell_bits_ = bits_ - level_;
     side_ = 1 << level_;
     std::fill_n(done_.begin(), side_, 0);
+    std::fill_n(noted_.begin(), side_, 0);
+    hiders_.resize(size_t(side_) * size_t(side_));
     items_.clear();
     last_.assign(size_t(side_) * size_t(side_), no_header);
     for (const BucketSlot& slot : slots) {
@@ -179,8 +181,10 @@ void BucketBuilder::put_stroke(const Edge& edge, double half_width, Rows& covere
 
 // Ends are places on the lattice. Where they are far out of the cell, floats would be too coarse for them.
 void BucketBuilder::put_edge(int column, int row, const std::array<double, 4>& ends, double reach) {
-    if ((done_[size_t(row)] >> column & 1) != 0)
+    if ((done_[size_t(row)] >> column & 1) != 0) {
+        note_hider(column, row);
         return;
+    }
     if ((met_[size_t(row)] >> column & 1) == 0)
         put_header(column, row);
     met_[size_t(row)] |= uint64_t{1} << column;
@@ -201,25 +205,39 @@ void BucketBuilder::put_header(int column, int row) {
     const auto cell = static_cast<uint32_t>(row * side_ + column);
     last_[cell] = static_cast<uint32_t>(items_.size());
     items_.push_back(
-        {cell,
-         {{style.is_fill() ? 0 : CELL_STROKE, slot_->slot, style.color, bits_of(double{style.half_width})}}});
+        {cell, {{style.is_fill() ? 0 : CELL_STROKE, slot_->slot, bits_of(double{style.half_width}), 0}}});
 }
 
 // The cells whose corners are inside of a fill, or that a stroke covers.
 void BucketBuilder::close(const Rows& inside) {
     const Style& style = styles_[slot_->slot];
     const uint64_t columns = side_ == 64 ? ~uint64_t{0} : (uint64_t{1} << side_) - 1;
+    const auto each = [](uint64_t cells, const auto& visit) {
+        for (; cells != 0; cells &= cells - 1)
+            visit(__builtin_ctzll(cells));
+    };
     for (int row = 0; row < side_; ++row) {
-        const uint64_t own = inside[size_t(row)] & columns & ~done_[size_t(row)];
-        for (uint64_t left = own; left != 0; left &= left - 1) {
-            const int column = __builtin_ctzll(left);
-            if ((met_[size_t(row)] >> column & 1) == 0)
+        const uint64_t all = inside[size_t(row)] & columns, own = all & ~done_[size_t(row)];
+        const uint64_t met = met_[size_t(row)];
+        each(all & ~own & ~noted_[size_t(row)], [&](int column) { note_hider(column, row); });
+        each(own, [&](int column) {
+            if ((met >> column & 1) == 0)
                 put_header(column, row);
             items_[last_[size_t(row * side_ + column)]].texel.words[0] |= CELL_INSIDE;
-        }
-        if (style.is_opaque())
-            done_[size_t(row)] |= style.is_fill() ? own & ~met_[size_t(row)] : own;
+        });
+        if (!style.is_opaque())
+            continue;
+        const uint64_t closed = style.is_fill() ? own & ~met : own;
+        each(closed, [&](int column) { hiders_[size_t(row * side_ + column)] = slot_->slot; });
+        done_[size_t(row)] |= closed;
     }
+}
+
+void BucketBuilder::note_hider(int column, int row) {
+    if ((noted_[size_t(row)] >> column & 1) != 0)
+        return;
+    noted_[size_t(row)] |= uint64_t{1} << column;
+    lists_.hiders.push_back(hiders_[size_t(row * side_ + column)]);
 }
 
 // Sorts the items by cells.

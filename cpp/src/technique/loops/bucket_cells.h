@@ -39,6 +39,7 @@ struct CellLists {
     std::vector<uint32_t> buckets;  // as bucket_entries, but the first cell counts from these
     std::vector<uint32_t> cells;
     std::vector<Texel> texels;
+    std::vector<uint32_t> hiders;  // slots below which something was left out, as nothing shows there
     uint64_t edges = 0;
     uint32_t longest = 0;
 
@@ -46,6 +47,7 @@ struct CellLists {
         buckets = {};
         cells = {};
         texels = {};
+        hiders = {};
     }
 };
 
@@ -78,6 +80,7 @@ private:
     void put_edge(int column, int row, const std::array<double, 4>& ends, double reach);
     void put_header(int column, int row);
     void close(const Rows& inside);
+    void note_hider(int column, int row);
     void write();
 
     int bits_;
@@ -85,9 +88,11 @@ private:
     CellLists& lists_;
     LatticePoint corner_{};
     int level_ = 0, cell_bits_ = 0, side_ = 1;
-    Rows done_{}, met_{};         // cells in which nothing more shows; cells with an edge of the slot
-    std::vector<Item> items_;     // headers and edges, of each cell in their order
-    std::vector<uint32_t> last_;  // header of each cell, as a place in the items
+    Rows done_{}, met_{},
+        noted_{};  // cells in which nothing more shows; with an edge of the slot; with a known hider
+    std::vector<uint32_t> hiders_;  // of cells that are done
+    std::vector<Item> items_;       // headers and edges, of each cell in their order
+    std::vector<uint32_t> last_;    // header of each cell, as a place in the items
     std::vector<uint32_t> begins_;
     const BucketSlot* slot_ = nullptr;
 };

@@ -1,6 +1,8 @@
 // From layers to what the shaders read.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
 #include "decalgl/core/error.h"
 #include "decalgl/core/parallel.h"
 #include "technique/loops/loops_layout.h"
@@ -128,25 +130,25 @@ LargeArray<Base> make_bases(const Hierarchy& hierarchy, unsigned threads) {
     return bases;
 }
 
-void count_features(Span<const Layer> layers, Span<const Decal> decals, uint32_t first_layer,
-                    LoopsIndex& index) {
+// Of all features that are drawn, each once.
+uint64_t count_segments(Span<const Layer> layers, Span<const Decal> decals, uint32_t first_layer) {
     std::vector<std::vector<bool>> seen;
     for (const Layer& layer : layers)
         seen.emplace_back(layer.features.feature_count(), false);
+    uint64_t segments = 0;
     for (const Decal& decal : decals) {
         const size_t layer = decal.feature.layer - first_layer;
         std::vector<bool>::reference is_seen = seen[layer][decal.feature.feature];
         if (is_seen)
             continue;
         is_seen = true;
-        ++index.features;
         const Features& features = layers[layer].features;
         const uint64_t vertices = features.vertices(decal.feature.feature).size() / 2;
         const auto parts = static_cast<uint64_t>(features.feature_offsets[decal.feature.feature + 1] -
                                                  features.feature_offsets[decal.feature.feature]);
-        index.segments +=
-            features.kind == FeatureKind::polygons ? vertices : vertices - std::min(parts, vertices);
+        segments += features.kind == FeatureKind::polygons ? vertices : vertices - std::min(parts, vertices);
     }
+    return segments;
 }
 
 // The paper's index.
@@ -160,19 +162,31 @@ Bvh make_bvh(const LoopsOptions& options, const Hierarchy& hierarchy, const Slot
         half_widths.push_back(style.half_width);
     Items items = make_items(hierarchy, bvh.primitives, slots, threads);
     bvh.items = items.size();
-    bvh.settings = fitted(*options.bvh, items.size());
-    bvh.tree = build_tree({&hierarchy, half_widths, bvh.primitives}, std::move(items),
-                          hierarchy.lattice.terrain, bvh.settings, threads, charge, progress);
+    const LoopsBvh settings = fitted(*options.bvh, items.size());
+    Tree tree = build_tree({&hierarchy, half_widths, bvh.primitives}, std::move(items),
+                           hierarchy.lattice.terrain, settings, threads, charge, progress);
+    bvh.words = std::move(tree.words);
+    bvh.counts = tree.counts;
+    bvh.most_lists = tree.most_lists;
     bvh.bases = make_bases(hierarchy, threads);
     return bvh;
 }
 
-Slots make_slots(const TechniqueInput& input, const std::vector<Decal>& decals, const Lattice& lattice) {
+Slots make_slots(const TechniqueInput& input, const std::vector<Decal>& upwards, const Hierarchy& hierarchy) {
+    const std::vector<Decal> decals(upwards.rbegin(), upwards.rend());
+    std::vector<Style> styles;
+    std::vector<uint32_t> features, numbers(decals.size());
+    for (const Decal& decal : decals) {
+        const uint32_t layer = decal.feature.layer - input.first_layer;
+        styles.push_back(style_of({&input.layers[layer], decal}, hierarchy.lattice.quantum));
+        features.push_back(hierarchy.first_features[layer] + decal.feature.feature);
+    }
+    std::iota(numbers.rbegin(), numbers.rend(), 0);
     Slots slots;
-    slots.decals.assign(decals.rbegin(), decals.rend());
-    for (const Decal& decal : slots.decals)
-        slots.styles.push_back(
-            style_of({&input.layers[decal.feature.layer - input.first_layer], decal}, lattice.quantum));
+    slots.decals = decals;
+    slots.features = std::move(features);
+    slots.styles = std::move(styles);
+    slots.upwards = std::move(numbers);
     return slots;
 }
 
@@ -193,9 +207,11 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
     auto index = std::make_shared<LoopsIndex>();
     index->charge = MemoryCharge(input.memory, "loops: prepared", 0);
     index->first_layer = input.first_layer;
+    std::vector<OutlineOrder> outlines;
     for (const Layer& layer : input.layers)
-        index->outlines.push_back(layer.outline_order);
-    count_features(input.layers, decals, input.first_layer, *index);
+        outlines.push_back(layer.outline_order);
+    index->outlines = std::move(outlines);
+    index->segments = count_segments(input.layers, decals, input.first_layer);
     Hierarchy hierarchy = build_hierarchy(input.layers, input.bounds, input.positions, *input.terrain,
                                           widest_reach(input.layers, input.first_layer, decals),
                                           choice.options, input.threads, progress);
@@ -204,22 +220,25 @@ std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress
     index->lattice = hierarchy.lattice;
     index->heights = hierarchy.heights;
     index->needs = hierarchy.needs;
-    index->first_features = hierarchy.first_features;
     index->steps = steps_of(hierarchy.arcs, hierarchy.refinement, input.threads);
-    auto slots = std::make_shared<Slots>(make_slots(input, decals, index->lattice));
-    slots->complete(*index, hierarchy.arcs);
+    auto slots = std::make_shared<Slots>(make_slots(input, decals, hierarchy));
     if (choice.options.bvh)
         index->bvh = make_bvh(choice.options, hierarchy, *slots, input.threads, index->charge, progress);
-    index->arcs = std::move(hierarchy.arcs);
-    index->arcs.drop_chains();
+    index->arcs = kept(std::move(hierarchy.arcs));
     index->activations = std::move(hierarchy.activations);
+    slots->reach_along(*index);
     progress.report(1.0);
     return std::make_unique<PreparedLoops>(std::move(index), std::move(slots), choice.detail);
 }
 
+uint64_t LoopsIndex::bytes() const {
+    return arcs.points.size_bytes() + activations.size_bytes() + steps.size_bytes() +
+           (bvh ? bvh->bases.size_bytes() + bvh->words.size_bytes() : 0);
+}
+
 PreparedCounts PreparedLoops::counts() const {
-    return {index_->features, index_->segments,
-            index_->bvh ? index_->bvh->tree.counts.references : index_->steps.size(), index_->charge.bytes(),
+    return {slots_->decals.size(), index_->segments,
+            index_->bvh ? index_->bvh->counts.references : index_->steps.size(), index_->bytes(),
             index_->lattice.quantum};
 }
 

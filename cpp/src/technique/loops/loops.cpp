@@ -19,12 +19,6 @@ namespace {
 using loops::detail_eye_of;
 using loops::LoopsIndex;
 
-[[noreturn]] void refuse_files() {
-    throw Error(ErrorKind::unsupported,
-                "layers of technique 'loops' are not kept on disk; prepare the scene anew, or use technique "
-                "'static'");
-}
-
 constexpr float no_bound = 3e38F;
 
 bool same(const DetailEye& a, const DetailEye& b) {
@@ -34,13 +28,13 @@ bool same(const DetailEye& a, const DetailEye& b) {
 
 }  // namespace
 
-void loops::PreparedLoops::save(ArchiveWriter&, const std::string&) const {
-    refuse_files();
+bool Loops::Cells::serve(const Cells& wanted, const loops::Slots& slots) const {
+    return sight == wanted.sight && same(eye, wanted.eye) && detail == wanted.detail && cells.serve(slots);
 }
 
-std::unique_ptr<const Prepared> Loops::open(const ArchiveReader&, const std::string&,
+std::unique_ptr<const Prepared> Loops::open(const ArchiveReader& archive, const std::string& prefix,
                                             const MemoryAccount&) const {
-    refuse_files();
+    return loops::open_loops(archive, prefix);
 }
 
 std::unique_ptr<const Prepared> Loops::preprocess(const TechniqueInput& input, Progress& progress) const {
@@ -50,85 +44,115 @@ std::unique_ptr<const Prepared> Loops::preprocess(const TechniqueInput& input, P
 void Loops::upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                    const TerrainView&, const MemoryAccount& memory) {
     memory_ = memory;
-    prepared_ = std::static_pointer_cast<const loops::PreparedLoops>(std::move(prepared));
-    if (lens && static_cast<const loops::PreparedLoops&>(*lens).slots() != prepared_->slots())
-        throw Error(ErrorKind::unsupported,
-                    "layers of technique 'loops' look the same inside a lens; use technique 'static' for "
-                    "another look there, or Detail(lens=) for more details");
-    if (uploaded_ != prepared_->index()) {
+    const auto index = static_cast<const loops::PreparedLoops&>(*prepared).index();
+    if (uploaded_ != index) {
         uploaded_ = nullptr;
-        key_.reset();
-        buffers_.clear();
+        bvh_.clear();
+        outside_ = {};
+        inside_ = {};
         no_vertices_ = gl::VertexArray::create();
-        if (prepared_->index()->bvh)
-            upload_bvh();
-        uploaded_ = prepared_->index();
-    } else if (uploaded_->bvh && uploaded_slots_ != prepared_->slots()) {
-        buffers_.pop_back();
-        add_buffer("loops_styles", GL_RG32UI, prepared_->slots()->styles);
+        if (index->bvh)
+            upload_bvh(*index);
+        uploaded_ = index;
     }
-    uploaded_slots_ = prepared_->slots();
+    upload_side(std::move(prepared), outside_);
+    upload_side(std::move(lens), inside_);
 }
 
 template <typename Values>
-void Loops::add_buffer(const char* name, GLenum format, const Values& values) {
-    buffers_.push_back(
-        {name, gl::TextureBuffer::from(memory_, "loops: index", format, Span(values.data(), values.size()))});
+Loops::NamedBuffer Loops::buffer_of(const char* name, GLenum format, const Values& values) const {
+    return {name,
+            gl::TextureBuffer::from(memory_, "loops: index", format, Span(values.data(), values.size()))};
 }
 
-void Loops::upload_bvh() {
-    const LoopsIndex& index = *prepared_->index();
-    add_buffer("loops_points", GL_RG32I, index.arcs.points);
-    add_buffer("loops_bases", GL_RG32UI, index.bvh->bases);
-    add_buffer("loops_activations", GL_RGBA32UI, index.activations);
-    add_buffer("loops_nodes", GL_R32UI, index.bvh->tree.words);
-    // The last, as it changes with the looks.
-    add_buffer("loops_styles", GL_RG32UI, prepared_->slots()->styles);
+void Loops::upload_bvh(const LoopsIndex& index) {
+    bvh_.push_back(buffer_of("loops_points", GL_RG32I, index.arcs.points));
+    bvh_.push_back(buffer_of("loops_bases", GL_RG32UI, index.bvh->bases));
+    bvh_.push_back(buffer_of("loops_activations", GL_RGBA32UI, index.activations));
+    bvh_.push_back(buffer_of("loops_nodes", GL_R32UI, index.bvh->words));
+}
+
+void Loops::upload_side(std::shared_ptr<const Prepared> prepared, Side& side) {
+    side.prepared = std::static_pointer_cast<const loops::PreparedLoops>(std::move(prepared));
+    if (!side.prepared) {
+        side = {};
+        return;
+    }
+    const SharedArray<loops::Style>& styles = side.prepared->slots()->styles;
+    if (side.uploaded.data() == styles.data())
+        return;
+    side.uploaded = {};
+    side.styles = buffer_of("loops_styles", GL_RG32UI, styles);
+    side.uploaded = styles;
 }
 
 // The cells of a view, unless they are there.
-void Loops::make_cells(const View& view) {
+void Loops::make_cells(const View& view, Side& side) {
+    const loops::PreparedLoops& prepared = *side.prepared;
+    const LoopsDetail& detail = prepared.detail();
+    Cells wanted{loops::Sight(view, uploaded_->lattice, uploaded_->heights),
+                 detail.has_eye ? detail.eye : detail_eye_of(view),
+                 detail,
+                 {},
+                 {}};
+    // Heat maps are of the same cells.
+    wanted.detail.shows = LoopsDetail::Shows::layers;
+    wanted.detail.heat_top = LoopsDetail().heat_top;
+    for (const std::shared_ptr<const Cells>& there : {side.cells, outside_.cells})
+        if (there && there->serve(wanted, *prepared.slots())) {
+            side.cells = there;
+            return;
+        }
+    side.cells = nullptr;
+    side.cells = cells_of(view, std::move(wanted), prepared);
+}
+
+std::shared_ptr<const Loops::Cells> Loops::cells_of(const View& view, Cells wanted,
+                                                    const loops::PreparedLoops& prepared) const {
     const gl::PassTimer timer(view.timings, "loops: cells");
-    const LoopsIndex& index = *prepared_->index();
-    const LoopsDetail& detail = prepared_->detail();
-    CellsKey key{loops::Sight(view, index.lattice, index.heights),
-                 detail.has_eye ? detail.eye : detail_eye_of(view), detail, prepared_->slots()};
-    if (key_ && key_->sight == key.sight && same(key_->eye, key.eye) && key_->detail == detail &&
-        key_->slots == key.slots)
-        return;
-    key_.reset();
-    const loops::ViewDetail wanted(detail, key.eye, key.sight, index.lattice, index.heights);
-    const loops::Slots& slots = *prepared_->slots();
+    const LoopsIndex& index = *prepared.index();
+    const loops::Slots& slots = *prepared.slots();
+    const loops::ViewDetail tolerances(wanted.detail, wanted.eye, wanted.sight, index.lattice, index.heights);
     const loops::ActiveArcs active =
         loops::active_arcs(index.arcs, index.steps, 0, [&](uint32_t point, size_t arc) {
-            return wanted.is_active(index.activations[point], double{slots.reaches[arc]});
+            return tolerances.is_active(index.activations[point], double{slots.reaches[arc]});
         });
-    cells_ = loops::make_cells(index.arcs, active, slots, key.sight.box(), 0);
-    buffers_.clear();
-    add_buffer("bucket_entries", GL_R32UI, cells_.lists.buckets);
-    add_buffer("cell_entries", GL_R32UI, cells_.lists.cells);
-    add_buffer("cell_texels", GL_RGBA32UI, cells_.lists.texels);
-    cells_.lists.drop();
-    key_ = std::move(key);
+    loops::ViewCells& cells = wanted.cells;
+    cells = loops::make_cells(index.arcs, active, slots, wanted.sight.box(), 0);
+    wanted.buffers.push_back(buffer_of("bucket_entries", GL_R32UI, cells.lists.buckets));
+    wanted.buffers.push_back(buffer_of("cell_entries", GL_R32UI, cells.lists.cells));
+    wanted.buffers.push_back(buffer_of("cell_texels", GL_RGBA32UI, cells.lists.texels));
+    cells.lists.drop();
+    return std::make_shared<const Cells>(std::move(wanted));
 }
 
 UpdateReport Loops::update(const View& view) {
-    const LoopsIndex& index = *prepared_->index();
-    if (view.antialias == Antialias::coverage && prepared_->detail().shows != LoopsDetail::Shows::layers)
-        throw Error(ErrorKind::unsupported,
-                    "heat maps of technique 'loops' count primitives at the centres of pixels; "
-                    "draw them with antialias 'none'");
-    if (!index.bvh)
-        make_cells(view);
+    const LoopsIndex& index = *uploaded_;
     UpdateReport report;
-    for (const NamedBuffer& each : buffers_)
-        report.bytes += each.buffer.buffer().bytes();
-    report.pieces = index.bvh ? index.bvh->tree.counts.references : cells_.lists.edges;
-    report.longest_walk = index.bvh ? index.bvh->tree.counts.longest_walk : cells_.lists.longest;
+    const auto add = [&](const NamedBuffer& each) { report.bytes += each.buffer.buffer().bytes(); };
+    for (Side* side : {&outside_, &inside_}) {
+        if (!side->prepared)
+            continue;
+        if (view.antialias == Antialias::coverage &&
+            side->prepared->detail().shows != LoopsDetail::Shows::layers)
+            throw Error(ErrorKind::unsupported,
+                        "heat maps of technique 'loops' count primitives at the centres of pixels; "
+                        "draw them with antialias 'none'");
+        add(side->styles);
+        if (index.bvh)
+            continue;
+        make_cells(view, *side);
+        if (side == &outside_ || side->cells != outside_.cells)
+            std::for_each(side->cells->buffers.begin(), side->cells->buffers.end(), add);
+    }
+    std::for_each(bvh_.begin(), bvh_.end(), add);
+    const loops::ViewCells* cells = index.bvh ? nullptr : &outside_.cells->cells;
+    report.pieces = cells ? cells->lists.edges : index.bvh->counts.references;
+    report.longest_walk = cells ? cells->lists.longest : index.bvh->counts.longest_walk;
     report.counts = {{"loops_vertices", double(index.activations.size())},
-                     {"loops_primitives", double(index.bvh ? index.bvh->items : cells_.active)},
+                     {"loops_primitives", double(cells ? cells->active : index.bvh->items)},
                      {"loops_references", double(report.pieces)},
-                     {"loops_nodes", double(index.bvh ? index.bvh->tree.counts.nodes : cells_.cells)},
+                     {"loops_nodes", double(cells ? cells->cells : index.bvh->counts.nodes)},
                      {"loops_dependencies", double(index.needs)},
                      {"loops_bytes", double(report.bytes)}};
     return report;
@@ -138,31 +162,41 @@ void Loops::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrar
     gl::Flags flags;
     if (view.antialias == Antialias::coverage)
         flags.insert("SAMPLES");
-    if (prepared_->detail().shows == LoopsDetail::Shows::tested)
-        flags.insert("TESTED");
-    if (prepared_->detail().shows == LoopsDetail::Shows::active)
-        flags.insert("ACTIVE");
+    glEnable(GL_BLEND);
     if (!view.has_below) {
         const GLfloat nothing[] = {0.0F, 0.0F, 0.0F, 0.0F};
         glClearBufferfv(GL_COLOR, 0, nothing);
+        // Both sides of the lens's border make one pixel.
+        if (inside_.prepared)
+            glBlendFunc(GL_ONE, GL_ONE);
+        else
+            glDisable(GL_BLEND);
     } else {
-        glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     }
-    draw_with(std::move(flags), view, gbuffer, programs);
+    draw_sides(flags, view, gbuffer, programs);
     glDisable(GL_BLEND);
 }
 
 void Loops::draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {
     const GLuint nothing[] = {0, 0, 0, 0};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    draw_with({"IDS"}, view, gbuffer, programs);
+    draw_sides({"IDS"}, view, gbuffer, programs);
 }
 
-void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer,
-                      gl::ProgramLibrary& programs) {
-    const LoopsIndex& index = *prepared_->index();
-    add_flags(flags);
+void Loops::draw_sides(const gl::Flags& flags, const View& view, const GBufferView& gbuffer,
+                       gl::ProgramLibrary& programs) {
+    draw_side(LensSide::outside, flags, view, gbuffer, programs);
+    if (inside_.prepared)
+        draw_side(LensSide::inside, flags, view, gbuffer, programs);
+}
+
+void Loops::draw_side(LensSide lens_side, gl::Flags flags, const View& view, const GBufferView& gbuffer,
+                      gl::ProgramLibrary& programs) const {
+    const Side& side = lens_side == LensSide::outside ? outside_ : inside_;
+    const LoopsIndex& index = *uploaded_;
+    const LoopsDetail& detail = side.prepared->detail();
+    add_flags(side, flags);
     gl::Program& program = programs.get(index.bvh ? "loops" : "loops_cells", flags);
     program.use();
     program.set("position_texture", 0);
@@ -171,11 +205,19 @@ void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuf
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
     }
-    int unit = 2;
-    for (const NamedBuffer& each : buffers_) {
+    if (flags.count("LENS") != 0) {
+        program.set("lens_side", static_cast<int>(lens_side));
+        program.set("lens_texture", 2);
+        gbuffer.lens->bind(2);
+    }
+    int unit = 3;
+    const auto bind = [&](const NamedBuffer& each) {
         program.set(each.name, unit);
         each.buffer.bind(static_cast<GLuint>(unit++));
-    }
+    };
+    bind(side.styles);
+    const std::vector<NamedBuffer>& buffers = index.bvh ? bvh_ : side.cells->buffers;
+    std::for_each(buffers.begin(), buffers.end(), bind);
     const loops::Lattice& lattice = index.lattice;
     program.set("first_block", glm::ivec2(lattice.first_block_x, lattice.first_block_y));
     program.set("block_shift",
@@ -183,20 +225,24 @@ void Loops::draw_with(gl::Flags flags, const View& view, const GBufferView& gbuf
     program.set("quantum", static_cast<float>(lattice.quantum));
     program.set("quanta_per_metre", static_cast<float>(1.0 / lattice.quantum));
     if (flags.count("TESTED") + flags.count("ACTIVE") != 0)
-        program.set("heat_top", static_cast<float>(prepared_->detail().heat_top));
-    if (index.bvh)
-        set_bvh(program, view);
-    else
-        set_cells(program);
+        program.set("heat_top", static_cast<float>(detail.heat_top));
+    if (index.bvh) {
+        set_bvh(program, view, detail);
+    } else {
+        const loops::ViewCells& cells = side.cells->cells;
+        program.set("grid_corner", glm::ivec2(cells.corner.x, cells.corner.y));
+        program.set("grid_size", glm::ivec2(cells.columns, cells.rows));
+        program.set("bucket_bits", cells.bucket_bits);
+    }
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 // What of the programs a scene needs.
-void Loops::add_flags(gl::Flags& flags) const {
-    const LoopsIndex& index = *prepared_->index();
-    const LoopsDetail& detail = prepared_->detail();
-    const std::vector<loops::Style>& styles = prepared_->slots()->styles;
+void Loops::add_flags(const Side& side, gl::Flags& flags) const {
+    const LoopsIndex& index = *uploaded_;
+    const LoopsDetail& detail = side.prepared->detail();
+    const SharedArray<loops::Style>& styles = side.prepared->slots()->styles;
     const auto is_fill = [](const loops::Style& style) { return style.is_fill(); };
     const auto add_if = [&](bool wanted, const char* flag) {
         if (wanted)
@@ -204,37 +250,36 @@ void Loops::add_flags(gl::Flags& flags) const {
     };
     add_if(std::any_of(styles.begin(), styles.end(), is_fill), "FILLS");
     add_if(!std::all_of(styles.begin(), styles.end(), is_fill), "STROKES");
+    add_if(inside_.prepared != nullptr, "LENS");
+    if (flags.count("IDS") == 0) {
+        add_if(detail.shows == LoopsDetail::Shows::tested, "TESTED");
+        add_if(detail.shows == LoopsDetail::Shows::active, "ACTIVE");
+    }
     if (!index.bvh) {
         const auto is_translucent = [](const loops::Style& style) {
             return style.is_shown() && !style.is_opaque();
         };
-        add_if(std::any_of(styles.begin(), styles.end(), is_translucent), "TRANSLUCENT");
+        add_if(flags.count("SAMPLES") != 0 && std::any_of(styles.begin(), styles.end(), is_translucent),
+               "TRANSLUCENT");
         return;
     }
     add_if(index.bvh->primitives == LinePrimitives::segments, "SEGMENTS");
-    add_if(index.bvh->tree.most_lists > 1, "PATHS");
+    add_if(index.bvh->most_lists > 1, "PATHS");
     add_if(detail.screen >= 0.0, "SCREEN");
     add_if(!detail.steps.empty(), "BY_DISTANCE");
     add_if(detail.lens >= 0.0, "CIRCLE");
 }
 
-void Loops::set_cells(gl::Program& program) const {
-    program.set("grid_corner", glm::ivec2(cells_.corner.x, cells_.corner.y));
-    program.set("grid_size", glm::ivec2(cells_.columns, cells_.rows));
-    program.set("bucket_bits", cells_.bucket_bits);
-}
-
-void Loops::set_bvh(gl::Program& program, const View& view) const {
-    const loops::Lattice& lattice = prepared_->index()->lattice;
+void Loops::set_bvh(gl::Program& program, const View& view, const LoopsDetail& detail) const {
+    const loops::Lattice& lattice = uploaded_->lattice;
     const loops::LatticeBox& box = lattice.terrain;
     program.set("root_box", glm::ivec4(box.min_x, box.min_y, box.max_x, box.max_y));
     program.set("length_scale", static_cast<float>(lattice.quantum / loops::length_scale));
-    set_detail(program, view);
+    set_detail(program, view, detail);
 }
 
-void Loops::set_detail(gl::Program& program, const View& view) const {
-    const LoopsDetail& detail = prepared_->detail();
-    const LoopsIndex& index = *prepared_->index();
+void Loops::set_detail(gl::Program& program, const View& view, const LoopsDetail& detail) const {
+    const LoopsIndex& index = *uploaded_;
     const loops::Lattice& lattice = index.lattice;
     program.set("uniform_bound", detail.uniform >= 0.0 ? static_cast<float>(detail.uniform) : no_bound);
     if (detail.lens >= 0.0) {

@@ -34,32 +34,44 @@ private:
         const char* name;
         gl::TextureBuffer buffer;
     };
-    // What the cells were made for.
-    struct CellsKey {
+    // The cells of a view, and what they were made for.
+    struct Cells {
         loops::Sight sight;
         DetailEye eye;
         LoopsDetail detail;
-        std::shared_ptr<const loops::Slots> slots;
+        loops::ViewCells cells;  // without its lists, which are on the GPU
+        std::vector<NamedBuffer> buffers;
+
+        bool serve(const Cells& wanted, const loops::Slots& slots) const;
+    };
+    // What is seen outside the lens, or inside.
+    enum class LensSide : int { outside, inside };
+    struct Side {
+        std::shared_ptr<const loops::PreparedLoops> prepared;
+        SharedArray<loops::Style> uploaded;
+        NamedBuffer styles{};
+        std::shared_ptr<const Cells> cells;  // both sides may have the same; none where there is a bvh
     };
 
-    void upload_bvh();
+    void upload_bvh(const loops::LoopsIndex& index);
+    void upload_side(std::shared_ptr<const Prepared> prepared, Side& side);
     template <typename Values>
-    void add_buffer(const char* name, GLenum format, const Values& values);
-    void make_cells(const View& view);
-    void add_flags(gl::Flags& flags) const;
-    void draw_with(gl::Flags flags, const View& view, const GBufferView& gbuffer,
-                   gl::ProgramLibrary& programs);
-    void set_bvh(gl::Program& program, const View& view) const;
-    void set_cells(gl::Program& program) const;
-    void set_detail(gl::Program& program, const View& view) const;
+    NamedBuffer buffer_of(const char* name, GLenum format, const Values& values) const;
+    void make_cells(const View& view, Side& side);
+    std::shared_ptr<const Cells> cells_of(const View& view, Cells wanted,
+                                          const loops::PreparedLoops& prepared) const;
+    void add_flags(const Side& side, gl::Flags& flags) const;
+    void draw_sides(const gl::Flags& flags, const View& view, const GBufferView& gbuffer,
+                    gl::ProgramLibrary& programs);
+    void draw_side(LensSide lens_side, gl::Flags flags, const View& view, const GBufferView& gbuffer,
+                   gl::ProgramLibrary& programs) const;
+    void set_bvh(gl::Program& program, const View& view, const LoopsDetail& detail) const;
+    void set_detail(gl::Program& program, const View& view, const LoopsDetail& detail) const;
 
     MemoryAccount memory_;
-    std::shared_ptr<const loops::PreparedLoops> prepared_;
     std::shared_ptr<const loops::LoopsIndex> uploaded_;
-    std::shared_ptr<const loops::Slots> uploaded_slots_;
-    std::vector<NamedBuffer> buffers_;
-    std::optional<CellsKey> key_;
-    loops::ViewCells cells_;  // without its lists, which are on the GPU
+    std::vector<NamedBuffer> bvh_;
+    Side outside_, inside_;  // without a lens, nothing is inside
     gl::VertexArray no_vertices_;
 };
 

@@ -33,38 +33,44 @@ struct Style {
 static_assert(sizeof(Base) == 8 && sizeof(Style) == 8, "RG32 texels");
 
 struct Bvh {
-    LoopsBvh settings;
     LinePrimitives primitives = LinePrimitives::triangles;
-    LargeArray<Base> bases;
-    Tree tree;
-    uint64_t items = 0;  // primitives of all slots, before the tree refers to some more than once
+    SharedArray<Base> bases;
+    SharedArray<uint32_t> words;
+    TreeCounts counts;
+    uint32_t most_lists = 1;  // that a position has
+    uint64_t items = 0;       // primitives of all slots, before the tree refers to some more than once
 };
 
 struct LoopsIndex {
     Lattice lattice;
     GroundRange heights;
-    Arcs arcs;
-    LargeArray<Activation> activations;
-    LargeArray<Step> steps;
+    KeptArcs arcs;
+    SharedArray<Activation> activations;
+    SharedArray<Step> steps;
     std::optional<Bvh> bvh;
     uint32_t first_layer = 0;
-    std::vector<uint32_t> first_features;  // of each layer, and how many there are in all
-    std::vector<OutlineOrder> outlines;    // of each layer
-    uint64_t features = 0;
+    SharedArray<OutlineOrder> outlines;  // of each layer
     uint64_t segments = 0;
     uint64_t needs = 0;
-    MemoryCharge charge;
+    MemoryCharge charge;  // nothing where the arrays lie in a file
+
+    uint64_t bytes() const;
 };
 
-// The topmost first.
+// Numbered as they lay when they were prepared, the topmost first. Copies share what they have in common.
 struct Slots {
-    std::vector<Decal> decals;
-    std::vector<Style> styles;
-    std::vector<uint32_t> features;  // as arcs count them
-    std::vector<float> reaches;      // of arcs: half the width of the widest stroke along each, metres
+    SharedArray<Decal> decals;
+    SharedArray<uint32_t> features;  // as arcs count them
+    SharedArray<Style> styles;
+    SharedArray<uint32_t> upwards;  // how they lie over each other now
+    SharedArray<float> reaches;     // of arcs: half the width of the widest stroke along each, metres
 
-    // Fills in what follows from decals and styles. `arcs`: the index has them once all is prepared.
-    void complete(const LoopsIndex& index, const Arcs& arcs);
+    // Fills in the reaches.
+    void reach_along(const LoopsIndex& index);
+    // Whether others differ in their colours alone.
+    bool lie_as(const Slots& others) const {
+        return reaches.data() == others.reaches.data() && upwards.data() == others.upwards.data();
+    }
 };
 
 class PreparedLoops : public Prepared {
@@ -86,8 +92,8 @@ public:
     // With other colours, widths, draw order and level of detail; the paper's index keeps widths and order.
     std::shared_ptr<const Prepared> restyled(Span<const LayerLook> looks,
                                              const MemoryAccount& memory) const override;
-    // These throw Error(unsupported).
     void save(ArchiveWriter& archive, const std::string& prefix) const override;
+    // Throws Error(unsupported).
     std::shared_ptr<const Prepared> edited(const LayerEdit& edit, const MemoryAccount& memory) const override;
 
 private:
@@ -98,5 +104,8 @@ private:
 
 // Throws Error(memory), Error(unsupported) for styles that LOOPS does not draw, Error(input), Error(cancelled).
 std::unique_ptr<PreparedLoops> build_loops(const TechniqueInput& input, Progress& progress);
+
+// What PreparedLoops::save wrote; throws Error(file) for anything else.
+std::unique_ptr<PreparedLoops> open_loops(const ArchiveReader& archive, const std::string& prefix);
 
 }  // namespace decalgl::loops

@@ -70,7 +70,8 @@ std::vector<FeatureReference> PreparedLoops::query(const SeenPoint& point) const
         return found;
     const Query query(*index_, *slots_, place);
     std::unordered_set<uint64_t> seen;
-    for (size_t slot = 0; slot < slots_->decals.size(); ++slot) {
+    for (size_t rank = slots_->upwards.size(); rank-- > 0;) {
+        const size_t slot = slots_->upwards[rank];
         const FeatureReference feature = slots_->decals[slot].feature;
         if (slots_->styles[slot].is_shown() && query.is_in(slot) &&
             seen.insert(uint64_t{feature.layer} << 32 | feature.feature).second)

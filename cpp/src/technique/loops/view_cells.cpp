@@ -30,6 +30,11 @@ bool holds(const RowSet& rows, int row) {
     return (rows[size_t(row) / 64] >> (row % 64) & 1) != 0;
 }
 
+void sort_unique(std::vector<uint32_t>& numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
 class Grid {
 public:
     Grid(const LatticeBox& box, uint64_t edges) {
@@ -57,17 +62,20 @@ public:
 };
 
 int64_t reach_of(const Style& style) {
-    return style.is_fill() ? 0 : static_cast<int64_t>(std::ceil(style.half_width)) + 1;
+    // Twice the lattice's extent is everywhere.
+    return style.is_fill() ? 0 : static_cast<int64_t>(std::ceil(std::min(style.half_width, 2e9F))) + 1;
 }
 
-// Goes over all edges of a slot, with the columns that each of them is put into.
+// Goes over all edges of a slot, the topmost being the first, with the columns that each of them is put into.
 class EdgeVisitor {
 public:
-    EdgeVisitor(const Arcs& arcs, const ActiveArcs& active, const Slots& slots, const Grid& grid)
+    EdgeVisitor(const KeptArcs& arcs, const ActiveArcs& active, const Slots& slots, const Grid& grid)
         : arcs_(arcs), active_(active), slots_(slots), grid_(grid) {}
 
+    // `visit(slot, column, edge)`.
     template <typename Visit>
-    void each(uint32_t slot, const Visit& visit) const {
+    void each(size_t rank, const Visit& visit) const {
+        const uint32_t slot = slots_.upwards[slots_.upwards.size() - 1 - rank];
         const Style& style = slots_.styles[slot];
         if (!style.is_shown())
             return;
@@ -93,13 +101,13 @@ public:
                 const int64_t first = std::max<int64_t>(grid_.column_of(edge.a.x - reach), 0);
                 const int64_t last = std::min<int64_t>(grid_.column_of(last_x), grid_.columns - 1);
                 for (int64_t column = first; column <= last; ++column)
-                    visit(static_cast<size_t>(column), edge);
+                    visit(slot, static_cast<size_t>(column), edge);
             }
         }
     }
 
 private:
-    const Arcs& arcs_;
+    const KeptArcs& arcs_;
     const ActiveArcs& active_;
     const Slots& slots_;
     const Grid& grid_;
@@ -116,9 +124,10 @@ ColumnReferences sort_by_columns(const EdgeVisitor& edges, const Grid& grid, siz
     const size_t blocks = block_count(slots, grain), columns = size_t(grid.columns);
     std::vector<uint64_t> places(columns * blocks + 1);
     parallel_for(slots, grain, threads, [&](size_t begin, size_t end) {
-        for (size_t slot = begin; slot < end; ++slot)
-            edges.each(static_cast<uint32_t>(slot),
-                       [&](size_t column, const Edge&) { ++places[column * blocks + begin / grain + 1]; });
+        for (size_t rank = begin; rank < end; ++rank)
+            edges.each(rank, [&](uint32_t, size_t column, const Edge&) {
+                ++places[column * blocks + begin / grain + 1];
+            });
     });
     for (size_t i = 1; i < places.size(); ++i)
         places[i] += places[i - 1];
@@ -127,9 +136,9 @@ ColumnReferences sort_by_columns(const EdgeVisitor& edges, const Grid& grid, siz
         sorted.begins.push_back(places[column * blocks]);
     sorted.all.resize(places.back());
     parallel_for(slots, grain, threads, [&](size_t begin, size_t end) {
-        for (size_t slot = begin; slot < end; ++slot)
-            edges.each(static_cast<uint32_t>(slot), [&](size_t column, const Edge& edge) {
-                sorted.all[places[column * blocks + begin / grain]++] = {static_cast<uint32_t>(slot), edge};
+        for (size_t rank = begin; rank < end; ++rank)
+            edges.each(rank, [&](uint32_t slot, size_t column, const Edge& edge) {
+                sorted.all[places[column * blocks + begin / grain]++] = {slot, edge};
             });
     });
     return sorted;
@@ -148,6 +157,8 @@ public:
             add_slot(references.subspan(i, next - i));
         }
         write(lists);
+        lists.hiders.insert(lists.hiders.end(), hiders_.begin(), hiders_.end());
+        sort_unique(lists.hiders);
     }
 
 private:
@@ -183,15 +194,27 @@ private:
         size_t next = 0;
         for (int row = first_row_; row < grid_.rows && (row <= last_row_ || inside); ++row) {
             inside = inside != holds(turned_, row);
-            const auto first = static_cast<uint32_t>(pieces_.size());
-            for (; next < own_.size() && own_[next].row == row; ++next)
-                if (!holds(done_, row))
-                    pieces_.push_back(own_[next].edge);
-            const auto count = static_cast<uint32_t>(pieces_.size()) - first;
-            if ((inside || count > 0) && !holds(done_, row))
-                entries_.push_back({row, {references[0].slot, inside, first, count}});
-            if (inside && count == 0 && style.is_opaque())
-                put(done_, row);
+            const size_t begin = next;
+            while (next < own_.size() && own_[next].row == row)
+                ++next;
+            if (inside || next > begin)
+                add_entry(row, references[0].slot, inside,
+                          Span<const Piece>(own_).subspan(begin, next - begin));
+        }
+    }
+
+    void add_entry(int row, uint32_t slot, bool inside, Span<const Piece> own) {
+        if (holds(done_, row)) {
+            hiders_.push_back(closers_[size_t(row)]);
+            return;
+        }
+        entries_.push_back(
+            {row, {slot, inside, static_cast<uint32_t>(pieces_.size()), static_cast<uint32_t>(own.size())}});
+        for (const Piece& piece : own)
+            pieces_.push_back(piece.edge);
+        if (inside && own.empty() && slots_.styles[slot].is_opaque()) {
+            put(done_, row);
+            closers_[size_t(row)] = slot;
         }
     }
 
@@ -268,7 +291,9 @@ private:
     const Grid& grid_;
     const Slots& slots_;
     int32_t left_;
-    RowSet turned_{}, done_{};           // of the slot in hand, and where nothing more shows
+    RowSet turned_{}, done_{};                   // of the slot in hand, and where nothing more shows
+    std::array<uint32_t, most_side> closers_{};  // what covers rows that are done
+    std::vector<uint32_t> hiders_;
     int first_row_ = 0, last_row_ = -1;  // of the slot in hand
     std::vector<Piece> own_;
     std::vector<Edge> pieces_;
@@ -284,7 +309,9 @@ CellLists joined(std::vector<CellLists>& columns, const Grid& grid, unsigned thr
         texels[i + 1] = texels[i] + columns[i].texels.size();
         all.edges += columns[i].edges;
         all.longest = std::max(all.longest, columns[i].longest);
+        all.hiders.insert(all.hiders.end(), columns[i].hiders.begin(), columns[i].hiders.end());
     }
+    sort_unique(all.hiders);
     if (texels.back() > most_texels)
         throw Error(ErrorKind::memory, "what is active in this view takes " + std::to_string(texels.back()) +
                                            " texels in technique 'loops', more than a shader can read; give "
@@ -312,9 +339,22 @@ CellLists joined(std::vector<CellLists>& columns, const Grid& grid, unsigned thr
 
 }  // namespace
 
-ViewCells make_cells(const Arcs& arcs, const ActiveArcs& active, const Slots& slots, const LatticeBox& box,
-                     unsigned threads) {
+bool ViewCells::serve(const Slots& slots) const {
+    if (slots.styles.data() == made_for.styles.data() && slots.lie_as(made_for))
+        return true;
+    const auto is_there = [](const Style& wanted, const Style& own) {
+        return own.is_shown() || !wanted.is_shown();
+    };
+    return slots.lie_as(made_for) &&
+           std::equal(slots.styles.begin(), slots.styles.end(), made_for.styles.begin(), is_there) &&
+           std::all_of(hiders.begin(), hiders.end(),
+                       [&](uint32_t slot) { return slots.styles[slot].is_opaque(); });
+}
+
+ViewCells make_cells(const KeptArcs& arcs, const ActiveArcs& active, const Slots& slots,
+                     const LatticeBox& box, unsigned threads) {
     ViewCells cells;
+    cells.made_for = slots;
     if (box.empty())
         return cells;
     cells.active = active.points.size() - arcs.count();
@@ -335,6 +375,7 @@ ViewCells make_cells(const Arcs& arcs, const ActiveArcs& active, const Slots& sl
     cells.rows = grid.rows;
     cells.lists = joined(columns, grid, threads);
     cells.cells = cells.lists.cells.size();
+    cells.hiders = std::move(cells.lists.hiders);
     return cells;
 }
 

@@ -20,10 +20,16 @@ struct ViewCells {
     uint64_t active = 0;  // edges, before they are cut
     uint64_t cells = 0;
     CellLists lists;  // all of them, the first texel an empty list
+
+    // Colours are no part of cells, which so serve for other ones too, and while features are hidden. Not where some
+    // are to be seen that were not, or that lay hidden below others.
+    bool serve(const Slots& slots) const;
+    Slots made_for;
+    std::vector<uint32_t> hiders;  // slots that are to stay opaque, sorted
 };
 
 // Throws Error(memory) where there is more than a shader can read.
-ViewCells make_cells(const Arcs& arcs, const ActiveArcs& active, const Slots& slots, const LatticeBox& box,
-                     unsigned threads);
+ViewCells make_cells(const KeptArcs& arcs, const ActiveArcs& active, const Slots& slots,
+                     const LatticeBox& box, unsigned threads);
 
 }  // namespace decalgl::loops

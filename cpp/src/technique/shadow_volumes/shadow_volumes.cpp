@@ -83,8 +83,8 @@ void ShadowVolumes::begin(LensSide side, const View& view, const GBufferView& gb
     glDepthFunc(GL_ALWAYS);
     draw_full_screen();
     glDepthMask(GL_FALSE);
-    // A face fails where it lies behind the surface: depth is reversed.
-    glDepthFunc(GL_GEQUAL);
+    // What counts lies behind the surface: depth is reversed. So what is counted passes, and queries can tell how much.
+    glDepthFunc(GL_LESS);
     glEnable(GL_DEPTH_CLAMP);
     glEnable(GL_STENCIL_TEST);
     glEnable(GL_SCISSOR_TEST);
@@ -139,8 +139,8 @@ bool ShadowVolumes::count(uint32_t first, uint32_t end, VolumeAt volume_at, gl::
     glScissor(box.left, box.bottom, box.right - box.left, box.top - box.bottom);
     program.use();
     glStencilFunc(GL_ALWAYS, 0, 0xFF);
-    glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_KEEP);
-    glStencilOpSeparate(GL_BACK, GL_KEEP, GL_INCR_WRAP, GL_KEEP);
+    glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
+    glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glEnable(GL_DEPTH_TEST);
     const glm::ivec4& picture = seen_.picture();

@@ -24,17 +24,6 @@ struct VolumeFileRecord {
 };
 static_assert(sizeof(VolumeFileRecord) == 56, "saved as it is");
 
-// Each of the numbers below `count` once.
-bool permutes(Span<const uint32_t> numbers, size_t count) {
-    std::vector<bool> seen(count, false);
-    for (const uint32_t number : numbers) {
-        if (number >= count || seen[number])
-            return false;
-        seen[number] = true;
-    }
-    return numbers.size() == count;
-}
-
 // Volumes follow each other by decal, and their corners lead to vertices.
 bool meshes_fit_together(const PreparedVolumes& volumes) {
     uint64_t next_corner = 0;

@@ -161,24 +161,26 @@ void append_geometry(DecalGroup& group, const DecalGroup& local, const Renumberi
 template <typename T>
 void sort_objects(DecalGroup& group, GrownArray<T> Parts::*array, unsigned threads,
                   const MemoryAccount& memory) {
-    const GrownArray<T>& before = group.*array;
-    LargeArray<T> objects(before.begin(), before.end());
-    LargeArray<LatticeBox> nodes(group.nodes.begin(), group.nodes.end());
+    const DecalGroup before = group;
     LargeArray<CellStart> cells(group.cells.begin(), group.cells.end());
-    parallel_for(cells.size(), cells_at_once, threads, [&](size_t begin, size_t end) {
-        std::vector<Entry> entries;
-        for (size_t cell = begin; cell < end; ++cell) {
-            entries.clear();
-            list_cell(group, static_cast<uint32_t>(cell), group, false, false, itself, entries);
-            sort_entries(entries);
-            for (uint32_t i = 0; i < entries.size(); ++i)
-                objects[cells[cell].object + i] = before[entries[i].index];
-            fill_tree(boxes_of(entries), nodes.data() + cells[cell].node);
-            cells[cell].count = static_cast<uint32_t>(entries.size());
-        }
+    const auto sort = [&](T* objects, LatticeBox* nodes) {
+        parallel_for(cells.size(), cells_at_once, threads, [&](size_t begin, size_t end) {
+            std::vector<Entry> entries;
+            for (size_t cell = begin; cell < end; ++cell) {
+                entries.clear();
+                list_cell(before, static_cast<uint32_t>(cell), before, false, false, itself, entries);
+                sort_entries(entries);
+                for (uint32_t i = 0; i < entries.size(); ++i)
+                    objects[cells[cell].object + i] = (before.*array)[entries[i].index];
+                fill_tree(boxes_of(entries), nodes + cells[cell].node);
+                cells[cell].count = static_cast<uint32_t>(entries.size());
+            }
+        });
+    };
+    // Edits go on in the same arrays.
+    (group.*array).change(memory, account, [&](T* objects) {
+        group.nodes.change(memory, account, [&](LatticeBox* nodes) { sort(objects, nodes); });
     });
-    group.*array = charged(SharedArray<T>(std::move(objects)), memory, account);
-    group.nodes = charged(SharedArray<LatticeBox>(std::move(nodes)), memory, account);
     group.cells = charged(SharedArray<CellStart>(std::move(cells)), memory, account);
 }
 

@@ -35,6 +35,24 @@ void set_lens(Antialias antialias, const GBufferView& gbuffer, int unit, gl::Pro
     program.set("by_share", antialias == Antialias::coverage);
 }
 
+// For a word that is not 0 where the search of some pixel did not come to its end.
+gl::Buffer begin_searches(const MemoryAccount& memory) {
+    gl::Buffer unfinished = gl::Buffer::create(memory, "static_bvh: searches", sizeof(uint32_t));
+    unfinished.clear();
+    unfinished.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+    return unfinished;
+}
+
+void require_finished(const gl::Buffer& unfinished) {
+    if (unfinished.read<uint32_t>().front() != 0)
+        throw Error(
+            ErrorKind::unsupported,
+            "a pixel of this view has more segments than coverage='thoeny' can look at, as this driver "
+            "ends loops after " +
+                std::to_string(most_turns) +
+                " turns; come closer, or draw with coverage='exact' or index='grid'");
+}
+
 [[noreturn]] void refuse_files() {
     throw Error(ErrorKind::unsupported,
                 "index 'bvh' is not kept on disk; prepare the scene with index 'grid'");
@@ -131,12 +149,18 @@ void StaticBvh::draw(const View& view, const GBufferView& gbuffer, gl::ProgramLi
     const GLfloat nothing[] = {0.0F, 0.0F, 0.0F, 0.0F};
     if (!view.has_below)
         glClearBufferfv(GL_COLOR, 0, nothing);
+    const auto& groups = outside_.prepared->groups;
+    const bool searches = std::any_of(groups.begin(), groups.end(),
+                                      [&](const bvh::DecalGroup& group) { return by_coverage(view, group); });
+    const gl::Buffer unfinished = searches ? begin_searches(memory_) : gl::Buffer();
     glEnable(GL_BLEND);
     if (inside_.prepared && gbuffer.lens != nullptr)
         draw_through_lens(view, gbuffer, programs);
     else
         draw_look(view, gbuffer, programs);
     glDisable(GL_BLEND);
+    if (searches)
+        require_finished(unfinished);
 }
 
 void StaticBvh::draw_look(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) {

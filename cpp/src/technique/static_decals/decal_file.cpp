@@ -7,6 +7,7 @@
 
 #include "core/archive.h"
 #include "decalgl/core/parallel.h"
+#include "technique/draw_order.h"
 #include "technique/static_decals/prepared_decals.h"
 
 namespace decalgl {
@@ -105,23 +106,12 @@ bool are_lists(const PreparedDecals& decals) {
            all_blocks(decals.bucket_entries.size(), has_cells) && all_blocks(cells, has_texels);
 }
 
-// Whether each rank is there once.
-bool are_ranks(Span<const uint32_t> ranks) {
-    std::vector<bool> seen(ranks.size(), false);
-    for (const uint32_t rank : ranks) {
-        if (rank >= ranks.size() || seen[rank])
-            return false;
-        seen[rank] = true;
-    }
-    return true;
-}
-
 // Arrays of slots are as long as they are many.
 bool are_of_slots(const PreparedDecals& decals) {
     const size_t count = decals.slots.size();
     const auto fits = [&](size_t size) { return size == 0 || size == count; };
     return count > 0 && decals.styles.size() == count && fits(decals.kinds.size()) &&
-           fits(decals.ranks.size()) && are_ranks(decals.ranks);
+           fits(decals.ranks.size()) && permutes(decals.ranks, decals.ranks.size());
 }
 
 bool name_slots(const PreparedDecals& decals) {

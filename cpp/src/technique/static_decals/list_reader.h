@@ -63,7 +63,7 @@ private:
         style_ = StyleReader(decals_, slot_);
         if (style_.is(STYLE_THOENY))
             style_.multiply_width(slope_.thoeny_width());
-        has_came_ = awaits_phase_ = false;
+        has_incoming_ = awaits_phase_ = false;
         std::fill(shares_.begin(), shares_.end(), (header & COVERS) != 0 ? Real(0) : none_);
         const Real unit = is_line_ ? std::ldexp(Real(1), -style_.scale()) : Real(1);
         const bool is_tangent = is_line_ && style_.is(STYLE_TANGENT);
@@ -97,7 +97,7 @@ private:
         } else if (!style_.is(STYLE_JOINED)) {
             add_capsule(measured(moves ? to : from_), measured(to));
         } else if (moves) {
-            has_came_ = has_came_ && to.x == from_.x && to.y == from_.y;
+            has_incoming_ = has_incoming_ && to.x == from_.x && to.y == from_.y;
             awaits_phase_ = style_.is(STYLE_PATTERN);
         } else {
             add_joined_edge(to);
@@ -133,6 +133,7 @@ private:
     void add_joined_edge(Vector2 to) {
         const Vector2 on_map = to - from_, along = measured(on_map), from = measured(from_);
         const double length = std::sqrt(dot(along, along)), width = style_.width_at(periods_);
+        const Vector2 direction = length > 0.0 ? Vector2{along.x / length, along.y / length} : Vector2{};
         // Patterns follow the length on the map.
         const double periods = std::sqrt(dot(on_map, on_map)) * style_.periods_per_unit();
         for (size_t i = 0; i < shares_.size(); ++i) {
@@ -141,17 +142,17 @@ private:
                 cover(i, std::sqrt(dot(past, past)) / style_.half_width(), width);
                 continue;
             }
-            const double t = dot(past, along) / length;
+            const double t = dot(past, direction);
             if (t >= 0.0 && t <= length)
-                cover(i, std::abs(cross(past, along)) / length / style_.half_width(),
+                cover(i, std::abs(cross(past, direction)) / style_.half_width(),
                       style_.width_at(periods_ + t / length * periods));
-            if (has_came_)
-                cover(i, style_.corner_share(past, came_, along), width);
+            if (has_incoming_)
+                cover(i, style_.corner_share(past, incoming_, direction), width);
         }
         if (length == 0.0)
             return;
-        has_came_ = true;
-        came_ = along;
+        has_incoming_ = true;
+        incoming_ = direction;
         periods_ += periods;
     }
 
@@ -205,9 +206,9 @@ private:
     std::vector<Real> shares_;
     std::vector<char> open_;  // not cut off by the clip before
     uint32_t slot_ = 0;
-    bool is_line_ = false, is_clip_ = false, has_came_ = false, awaits_phase_ = false;
+    bool is_line_ = false, is_clip_ = false, has_incoming_ = false, awaits_phase_ = false;
     StyleReader style_;
-    Vector2 from_{}, came_{};
+    Vector2 from_{}, incoming_{};
     double periods_ = 0.0;
 };
 

@@ -1,4 +1,4 @@
-// Style records on the CPU: the same tests as stroke.glsl and hatch.glsl, for picking and for levels of detail.
+// Style records on the CPU: the same tests as styles.glsl, for picking and for levels of detail.
 #pragma once
 
 #include <algorithm>
@@ -50,36 +50,19 @@ public:
         const double at = periods - std::floor(periods);
         double widest = -1.0;
         for (uint32_t i = 1; i <= mark_count(); ++i) {
-            const double begin = float_of(record_[i][0]), end = float_of(record_[i][1]);
-            if (at < begin || at > end)
-                continue;
-            const double share = end > begin ? (at - begin) / (end - begin) : 0.0;
-            widest = std::max(widest, float_of(record_[i][2]) +
-                                          share * (float_of(record_[i][3]) - float_of(record_[i][2])));
+            const StyleTexel& mark = record_[i];
+            widest = std::max(
+                widest,
+                mark_width({float_of(mark[0]), float_of(mark[1]), float_of(mark[2]), float_of(mark[3])}, at));
         }
         return widest;
     }
 
-    // The share of the half width at which a joined stroke's corner between two edges covers a point; all lead from
-    // the corner.
-    double corner_share(Vector2 at, Vector2 came, Vector2 goes) const {
-        const double before = std::sqrt(dot(came, came)), after = std::sqrt(dot(goes, goes));
-        const double cosine = dot(came, goes) / (before * after);
-        const bool mitred = is(STYLE_MITER) && cosine >= double{float_of(record_[0][1])};
-        if (!mitred && !is(STYLE_BEVEL))
-            return std::sqrt(dot(at, at)) / half_width();
-        if (dot(at, came) < 0.0 || dot(at, goes) > 0.0)
-            return not_covered;
-        double apart = std::max(std::abs(cross(came, at)) / before, std::abs(cross(goes, at)) / after);
-        if (is(STYLE_BEVEL)) {
-            const Vector2 out{came.x / before - goes.x / after, came.y / before - goes.y / after};
-            const double length = std::sqrt(dot(out, out)),
-                         half_turn = std::sqrt(std::max(0.5 * (1.0 + cosine), 0.0));
-            if (length * half_turn <= 0.0)
-                return not_covered;
-            apart = std::max(apart, dot(at, out) / (length * half_turn));
-        }
-        return apart / half_width();
+    // The share of the half width at which a joined stroke's corner covers a point, to which `at` leads from there;
+    // `incoming` and `outgoing` are the directions of the edges before and after it.
+    double corner_share(Vector2 at, Vector2 incoming, Vector2 outgoing) const {
+        return corner_reach(corner(), at, incoming, outgoing, -double{float_of(record_[0][1])}) /
+               half_width();
     }
 
     // Of those that there are, the one at a share of the half width.
@@ -117,6 +100,9 @@ public:
     }
 
 private:
+    Corner corner() const {
+        return is(STYLE_BEVEL) ? Corner::bevel : is(STYLE_MITER) ? Corner::miter : Corner::round;
+    }
     uint32_t mark_count() const { return record_[0][3] & COUNT_BITS_OF_MARKS; }
 
     static constexpr StyleTexel plain_{};

@@ -17,6 +17,7 @@ loops        loops_detail, loops_static, loops_seg_time, loops_fitted_time ...: 
 styles       style, mode: what do styles and modes of anti-aliasing cost beside plain strokes and fills?
 clipmap      memory, generate, width, tiles, picture: what do the solutions for lines in textures cost?
 volume       memory, prepare, draw: what do shadow volumes cost, with one colour and with hundreds?
+artefacts    figure: how far do the artefacts go that papers name?
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import (
+    artefacts,
     clipmap,
     distance_field,
     dynamic,
@@ -67,4 +69,5 @@ SUITES: dict[str, Callable[[Workload, Records], None]] = {
     "volume": volume.measure,
     "distance_field": distance_field.measure,
     "loops": loops.measure,
+    "artefacts": artefacts.measure,
 }

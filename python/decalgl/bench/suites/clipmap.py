@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 # Solutions of section 4, and solutions 2 and 4b by other methods of the joints.
 WAYS: dict[str, dict[str, Any]] = {
     "1": {"solution": "1"},
+    "2, method 1": {"solution": "2", "joints": "1"},
     "2, method 2": {"solution": "2", "bevel_below": 10.0},
     "2, method 3a": {"solution": "2", "joints": "3a"},
     "2, method 3b": {"solution": "2"},
@@ -39,6 +40,7 @@ WAYS: dict[str, dict[str, Any]] = {
     "3b": {"solution": "3b"},
     "4a": {"solution": "4a"},
     "4b": {"solution": "4b"},
+    "4b, method 1": {"solution": "4b", "joints": "1"},
     "4b, method 3a": {"solution": "4b", "joints": "3a"},
     "4b polar": {"solution": "4b polar"},
 }
