@@ -332,7 +332,7 @@ class Renderer:
 
 
 def _warn_of_rounding(counts: Mapping[str, float]) -> None:
-    if counts["quantum_px"] > 1.0:
+    if counts["quantum_px"] > MOST_ROUNDED:
         warn(
             f"In the middle of this picture, layers may be {counts['quantum_px']:.3g} pixels off: over a terrain of"
             f" this size, vertices are kept to {counts['quantum_m']:.3g} m, and positions to micrometres at best. Cut"
@@ -340,6 +340,8 @@ def _warn_of_rounding(counts: Mapping[str, float]) -> None:
         )
 
 
+# Pixels that positions may be rounded by without a warning. Both ends of a gap, and the ground, are rounded each.
+MOST_ROUNDED = 0.25
 DEFAULT_OPTIONS = {
     "terrain_error": 0.5,
     "memory_limit": None,

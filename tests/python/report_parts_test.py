@@ -74,6 +74,7 @@ def test_what_is_needless_is_found() -> None:
         ("slope", 89.9, "distance_field", "exact"),
         ("nesting", 100.0, "loops", "within tolerance"),
         ("coincident", 1e-6, "volume", "warns"),
+        ("coincident", 1e-5, "loops", "warns"),
     ],
 )
 def test_verdicts_at_the_extremes(name: str, value: float, technique: str, verdict: str) -> None:

@@ -87,14 +87,13 @@ def lakes(ground: dg.Terrain, least: int = 40) -> dg.FeatureTable:
 
 
 def above_surroundings(ground: dg.Terrain, samples: int) -> dg.Terrain:
-    """Heights above the mean of a square of so many samples to each side."""
+    """Heights above the mean of a square of so many samples to each side; NaN at sea, which is level."""
     side = 2 * samples + 1
     padded = np.pad(ground.z.astype(np.float64), samples, mode="edge")
     sums = np.pad(padded.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
     means = (sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]) / side**2
-    return dg.Terrain(
-        (ground.z - means).astype(np.float32), ground.x0, ground.y0, ground.dx, ground.dy, ground.crs
-    )
+    above = np.where(ground.z > 0.0, ground.z - means, np.nan).astype(np.float32)
+    return dg.Terrain(above, ground.x0, ground.y0, ground.dx, ground.dy, ground.crs)
 
 
 def table(kind: Any, features: Sequence[Sequence[FloatArray]]) -> dg.FeatureTable:

@@ -20,8 +20,6 @@ from .case_studies import Map, build, vertices
 if TYPE_CHECKING:
     from .part import Step
 
-PICTURE = (640, 360)
-
 
 def main() -> None:
     name, step = sys.argv[1:]
@@ -36,14 +34,12 @@ def _taken(name: str, step: Step) -> dict[str, Any]:
     make = timed(lambda: made.append(build(name, step)))
     (drawn,) = made
     scene = drawn.scene()
-    renderer = dg.Renderer(PICTURE, antialias="none")
+    renderer = dg.Renderer()
     prepare = timed(lambda: renderer.preprocess(scene))
     renderer.update(views.views(drawn)["oblique"])
     stats = renderer.render().stats
     return {
         "vertices": vertices(scene),
-        "features": sum(len(layer.features) for layer in scene.layers),
-        "samples": drawn.ground.z.size,
         "make_ms": make,
         "prepare_ms": prepare,
         "layers_bytes": stats.bytes.get("static", 0),

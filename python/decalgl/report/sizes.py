@@ -63,17 +63,16 @@ def figures(rows: Sequence[Row]) -> list[Figure]:
 
 def table(rows: Sequence[Row]) -> Table:
     """A line for each scene and step."""
-    columns = ("scene", "step", "features", "vertices", "made in", "prepared in", "index", "peak of memory")
+    columns = ("scene", "step", "vertices", "made in", "prepared in", "index", "peak of memory")
     return Table(columns, [_cells(row) for row in rows])
 
 
 def _cells(row: Row) -> tuple[str, ...]:
     words = (row["scene"], row["step"])
     if "refused" in row:
-        return (*words, row["refused"], *[""] * 5)
+        return (*words, row["refused"], *[""] * 4)
     return (
         *words,
-        f"{row['features']:,}",
         f"{row['vertices']:,}",
         f"{number(row['make_ms'] / 1000.0)} s",
         f"{number(row['prepare_ms'] / 1000.0)} s",

@@ -7,6 +7,7 @@ pixel, which is rounding, or within a whole one, which is blur, simplification o
 from __future__ import annotations
 
 import functools
+import math
 import warnings
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -72,7 +73,8 @@ class Way:
     """A technique as it is driven.
 
     follows_view: its widths are those on the screen. kinds: "both" or "lines". one_look: of networks, where features
-    that look the same are one, all are opaque and of one colour. looks: what it makes of corners and caps.
+    that look the same are one, all are opaque and of one colour. looks: what it makes of corners and caps. most: of
+    some extremes, the largest value that it is driven to, where more would take hours.
     """
 
     technique: dg.Technique
@@ -81,6 +83,11 @@ class Way:
     kinds: str = "both"
     one_look: bool = False
     looks: dict[str, Any] = field(default_factory=dict)
+    most: dict[str, float] = field(default_factory=dict)
+
+    def drives(self, extreme: Extreme, value: float, case: Case) -> bool:
+        """Whether it is asked to draw a case."""
+        return value <= self.most.get(extreme.name, math.inf) and (self.kinds == "both" or bool(case.lines))
 
     def scene(self, case: Case) -> dg.Scene:
         """The case as this technique draws it."""
@@ -93,15 +100,19 @@ class Way:
         )
 
 
+# Of what is cut into triangles: cutting takes the square of the number of holes, and volumes a mask for each feature.
+TRIANGLES = {"overlap": 1e3, "nesting": 100.0, "holes": 1e4, "vertices": 1e5}
 WAYS = {
     "static": Way(dg.Static()),
     "static bvh": Way(dg.Static(), {"index": "bvh"}),
     "dynamic bins": Way(dg.Dynamic(method="bins"), follows_view=True, kinds="lines"),
     "dynamic lists": Way(dg.Dynamic(method="lists"), follows_view=True, kinds="lines"),
     "loops": Way(dg.Loops()),
-    "volume": Way(dg.Volume()),
+    "volume": Way(dg.Volume(), most=TRIANGLES),
     # Its joints are miters, from right angles on bevels, and its ends have no caps.
-    "clipmap": Way(dg.Clipmap(), looks={"corner": "miter", "miter_limit": 90.0, "cap": "butt"}),
+    "clipmap": Way(
+        dg.Clipmap(), looks={"corner": "miter", "miter_limit": 90.0, "cap": "butt"}, most=TRIANGLES
+    ),
     "distance_field": Way(dg.DistanceField(), kinds="lines", one_look=True),
 }
 # Why a technique is off where it is, by the worst that happens to it.
@@ -146,7 +157,7 @@ def driven(extreme: Extreme, values: Iterable[float]) -> list[Row]:
     for value in values:
         case = extreme.make(value)
         for name, way in WAYS.items():
-            if way.kinds == "both" or case.lines:
+            if way.drives(extreme, value, case):
                 words = {"scene": f"{extreme.name} {value:g}", "extreme": extreme.name, "technique": name}
                 found.append({**words, "value": value, **judged(way, case)})
     return found
