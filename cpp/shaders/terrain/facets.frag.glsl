@@ -4,7 +4,7 @@ layout(location = 0) out float many;
 uniform sampler2D ray_surface_texture;  // of 4 x 4 rays a pixel
 
 const int ray_count = 16;
-const int most_facets = 4;
+const int most_facets = 7;
 
 void main() {
     ivec2 corner = 4 * ivec2(gl_FragCoord.xy);

@@ -13,7 +13,7 @@
 
 // Pixels larger than this many cells are sampled point by point.
 const float most_cells_across = 1.5;
-const int most_borders = 10;
+const int most_borders = 16;  // those between fills are met from both sides, and strokes count twice
 const float most_spread = 0.03;
 // Mesa's software rasteriser ends a shader's loops after 65,535 turns, and quarters take four times as many.
 const int most_words = 4096;
@@ -185,7 +185,6 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside, inout Effort
                 if (alike != for_each) group.covered = is_stroke(group) ? group.covered | uvec2(alike) : group.covered ^ uvec2(alike);
             }
             ++at;
-            ++effort.words;
             if (ends) {
 #ifdef STYLES
                 add_group(samples, open, group, cell, local, foot);
@@ -197,7 +196,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside, inout Effort
             }
         } while (alike != for_each && !ended);
         if (alike == for_each) {
-            ++effort.borders;
+            effort.borders += is_stroke(group) ? 2 : 1;
 #ifdef PARTS
             if (is_stroke(group)) add_styled(group, group.before, group.from);
 #else
@@ -209,6 +208,7 @@ vec4 composite_cell(Cell cell, vec2 local, mat2 foot, uvec2 inside, inout Effort
             else group.covered ^= crossing_mask(crossing_of(group, group.before, group.from));
         }
     } while (!ended);
+    effort.words += at - 4 * int(cell.entry >> COUNT_BITS);
     return samples.sum;
 }
 

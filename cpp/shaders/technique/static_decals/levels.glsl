@@ -10,7 +10,7 @@ uniform sampler2D lens_levels;
 const float most_taps = 12.0;  // along a pixel's longer side
 const float texels_per_tap = 1.5;
 const float texels_per_fine_tap = 1.0;
-const float most_tap_spread = 0.03;
+const float most_tap_spread = 0.02;
 
 // A pixel's sides in texels of the finest level.
 vec2 sides_in_texels(mat2 foot) {
