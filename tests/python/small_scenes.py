@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pytest
 from shapely import LineString, box
 
 import decalgl as dg
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     from numpy.typing import NDArray
 
 BOUNDS = (0.0, 0.0, 100.0, 100.0)
@@ -31,6 +35,11 @@ def hilly_scene(**options: Any) -> dg.Scene:
     x = np.linspace(-1.0, 1.0, 21)
     hill = 20.0 * np.exp(-4.0 * (x[None, :] ** 2 + x[:, None] ** 2))
     return dg.Scene(dg.Terrain(hill.astype(np.float32), 0.0, 100.0, 5.0, 5.0), **options)
+
+
+def warned(says: str | None) -> AbstractContextManager[object]:
+    """In which a warning that says so comes; without it none may."""
+    return nullcontext() if says is None else pytest.warns(dg.DecalWarning, match=says)
 
 
 def draw(scene: dg.Scene, camera: dg.Camera = MAP, size: tuple[int, int] = SIZE, **options: Any) -> dg.Frame:

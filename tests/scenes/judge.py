@@ -35,6 +35,8 @@ AROUND = [
 ]
 # Of a pixel's footprint, and metres: how exact positions are.
 SHARE, LEAST = 0.01, 1e-5
+# What clipmaps say of scenes that they cannot draw well.
+CLIPMAPS_WARN = {"grazing_plain": "looks along the ground", "eye_at_one_metre": "pixels off"}
 BLACK = dg.Relief(color="black", strength=0.0)
 WHITE = dg.Relief(color="white", strength=0.0)
 

@@ -99,9 +99,8 @@ def write(out: Path) -> Path:
             _write_csv(out / f"{name}.csv", rows)
             sections.append(Section(name, part.TITLE, part.ABOUT, part.figures(rows)))
     target = out / "index.html"
-    target.write_text(
-        page(TITLE, results["machine"], f"{NOTE} {_extent(results)}", sections), encoding="utf-8"
-    )
+    note = f"{NOTE} {_extent(results['parts'])}"
+    target.write_text(page(TITLE, results["machine"], note, sections), encoding="utf-8")
     return target
 
 
