@@ -1,15 +1,13 @@
-"""LOOPS: against the reference at full detail and within its bounds, topology by shapely, levels of detail by place."""
+"""LOOPS: against the reference at full detail and within its bounds, other looks, levels of detail by place."""
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-import shapely
 from shapely import LineString, box
 
 import decalgl as dg
@@ -18,11 +16,9 @@ import rounding
 import saved_scenes
 import scenes
 import shapes
-from decalgl.bench import topology
-from decalgl.features import read_features
 from decalgl.loops import NAMED_BVHS
 from scenes import View
-from small_scenes import BOUNDS, MAP, SIZE, draw, flat_scene
+from small_scenes import MAP, SIZE, draw, flat_scene
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -56,19 +52,7 @@ def renderer() -> dg.Renderer:
 
 def by_loops(view: View, technique: dg.Loops) -> View:
     """The same view, drawn by LOOPS."""
-    copy = dg.Scene(view.scene.terrain, view.scene.exaggeration, view.scene.relief)
-    copy._layers.extend(dataclasses.replace(layer, technique=technique) for layer in view.scene.layers)
-    return view._replace(scene=copy)
-
-
-def rough_ring(seed: int, x: float, y: float, radius: float, count: int = 400) -> shapely.Polygon:
-    """A ring with details of all sizes."""
-    generator = np.random.default_rng(seed)
-    angle = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
-    waves = np.arange(2, count // 4)
-    phase, size = generator.uniform(0, 2 * np.pi, len(waves)), generator.normal(size=len(waves)) / waves
-    r = radius * (1.0 + 0.25 * (size[:, None] * np.cos(waves[:, None] * angle + phase[:, None])).sum(axis=0))
-    return shapely.Polygon(np.column_stack([x + r * np.cos(angle), y + r * np.sin(angle)]))
+    return view._replace(scene=shapes.drawn_by(view.scene, technique))
 
 
 # Against the reference
@@ -143,7 +127,7 @@ def test_coverage_of_translucent_features_is_that_of_static_ones() -> None:
 def varied_scene(technique: str | dg.Technique) -> dg.Scene:
     """Polygons with outlines, translucent, and lines over them."""
     scene = flat_scene()
-    rings = [rough_ring(i, 15.0 + 17.0 * (i % 5), 15.0 + 17.0 * (i // 5), 11.0) for i in range(25)]
+    rings = [shapes.rough_ring(i, 15.0 + 17.0 * (i % 5), 15.0 + 17.0 * (i // 5), 11.0) for i in range(25)]
     outline = dg.Outline(width=1.0, width_units="m", color="black")
     scene.add_polygons(rings, color=shapes.tints(25, 4, 0.6), outline=outline, technique=technique)
     walk = np.cumsum(np.random.default_rng(1).normal(size=(300, 2)), axis=0) + 50.0
@@ -227,7 +211,7 @@ def test_cells_are_made_anew_only_for_what_they_do_not_hold() -> None:
     frames = {}
     for technique in ("static", FULL):
         scene = flat_scene()
-        rings = [rough_ring(i, 50.0, 50.0, 45.0 - 8.0 * i) for i in range(5)]
+        rings = [shapes.rough_ring(i, 50.0, 50.0, 45.0 - 8.0 * i) for i in range(5)]
         layer = scene.add_polygons(
             rings, color=shapes.tints(5, 4), order=[4, 3, 2, 1, 0], technique=technique
         )
@@ -332,7 +316,7 @@ def test_cells_hold_what_is_in_the_picture() -> None:
 def prepared(technique: dg.Loops) -> tuple[dg.Renderer, dg.Layer]:
     """Rings that do not overlap, so that none needs another."""
     scene = flat_scene()
-    rings = [rough_ring(i, 10.0 + 20.0 * (i % 5), 10.0 + 20.0 * (i // 5), 5.0) for i in range(25)]
+    rings = [shapes.rough_ring(i, 10.0 + 20.0 * (i % 5), 10.0 + 20.0 * (i // 5), 5.0) for i in range(25)]
     layer = scene.add_polygons(rings, color=shapes.tints(25, 4), technique=technique)
     drawn = dg.Renderer(size=(400, 400), antialias="none")
     drawn.preprocess(scene)
@@ -411,79 +395,6 @@ def test_heat_maps_count_primitives() -> None:
     drawn.set_picture((100, 100), "coverage")
     with pytest.raises(dg.UnsupportedError, match="antialias"):
         drawn.update(MAP)
-
-
-# Topology
-
-
-@functools.cache
-def land_cover() -> Any:
-    """Real land cover of a part of Honolulu, every border of which is shared."""
-    layer = scenes.build("honolulu").scene.layers[0]
-    return layer.features
-
-
-@pytest.mark.parametrize(
-    ("order", "levels"), [("douglas_peucker", 10), ("wang_mueller", 4), ("visvalingam_whyatt", 4)]
-)
-def test_real_borders_neither_cross_nor_open(order: str, levels: int) -> None:
-    tolerances = list(np.geomspace(2.0, 20000.0, levels))
-    counts = list(topology.counts_of(land_cover(), order, tolerances))
-    assert [(each.crossings, each.openings) for each in counts] == [(0, 0)] * (levels + 1)
-    assert counts[-1].edges < 0.2 * counts[0].edges
-
-
-def test_crossings_and_openings_are_counted() -> None:
-    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
-    beside = np.array([[4.0, 0.0], [8.0, 0.0], [8.0, 4.0], [4.0, 4.0], [4.0, 2.0]])
-    edges = topology.edges_of(np.concatenate([square, beside]), np.array([0, 4, 9]))
-    rim = topology.odd_edges(topology.edges_of(np.concatenate([square, beside[:4]]), np.array([0, 4, 8])))
-    # One side is split and the other is not: it is open there, and lies along it.
-    assert topology.count_openings(edges, rim.reshape(-1, 2)) == 2
-    assert topology.count_crossings(edges) == 2
-    crossing = np.array([[0.0, 0.0, 2.0, 2.0], [0.0, 2.0, 2.0, 0.0], [2.0, 0.0, 2.0, 2.0]])
-    assert topology.count_crossings(crossing) == 1
-
-
-def test_partitions_stay_partitions() -> None:
-    cells = shapes.partition(BOUNDS, 9, 8, seed=2)
-    assert all(shapely.is_valid(cells))
-    features = read_features(cells, "polygons", terrain_crs=None, layer_name="cells")[0]
-    tolerances = [0.0, 0.5, 1.5, 100.0]
-    for order in ("douglas_peucker", "wang_mueller", "visvalingam_whyatt"):
-        fewer = len(features.coords) + 1
-        for coords, parts, owners in dg.Loops(order=order).simplified(features, tolerances):
-            rings = [shapely.Polygon(coords[a:b]) for a, b in itertools.pairwise(parts)]
-            assert len(rings) == len(cells)
-            assert list(owners) == list(range(len(cells) + 1))
-            assert all(shapely.is_valid(rings))
-            whole = shapely.union_all(rings)
-            assert shapely.area(rings).sum() == pytest.approx(whole.area, rel=1e-9)
-            assert whole.geom_type == "Polygon"
-            assert len(whole.interiors) == 0
-            assert len(coords) < fewer
-            fewer = len(coords)
-
-
-def test_a_function_gives_the_order() -> None:
-    ring = rough_ring(3, 50.0, 50.0, 30.0)
-
-    def by_index(arc: FloatArray) -> tuple[Any, Any]:
-        indices = np.arange(1, len(arc) - 1)
-        return indices, indices.astype(float)
-
-    def fails(_: FloatArray) -> tuple[Any, Any]:
-        raise ZeroDivisionError
-
-    features = read_features([ring], "polygons", terrain_crs=None, layer_name="ring")[0]
-    full, half, none = dg.Loops(order=by_index).simplified(features, [0.0, 200.5, 1e6])
-    assert len(full[0]) == 400
-    assert 100 < len(half[0]) < 300
-    assert len(none[0]) == 0
-    with pytest.raises(dg.InputError, match="each vertex"):
-        dg.Loops(order=lambda _: ([1], [0.0])).simplified(features, [0.0])
-    with pytest.raises(ZeroDivisionError):
-        dg.Loops(order=fails).simplified(features, [0.0])
 
 
 # What is refused

@@ -56,6 +56,16 @@ def uneven_terrain(
 # Features
 
 
+def rough_ring(seed: int, x: float, y: float, radius: float, count: int = 400) -> shapely.Polygon:
+    """A ring with details of all sizes."""
+    generator = np.random.default_rng(seed)
+    angle = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    waves = np.arange(2, count // 4)
+    phase, size = generator.uniform(0, 2 * np.pi, len(waves)), generator.normal(size=len(waves)) / waves
+    r = radius * (1.0 + 0.25 * (size[:, None] * np.cos(waves[:, None] * angle + phase[:, None])).sum(axis=0))
+    return shapely.Polygon(np.column_stack([x + r * np.cos(angle), y + r * np.sin(angle)]))
+
+
 def circle(x: float, y: float, radius: float, corners: int = 24, turn: float = 0.0) -> FloatArray:
     """A regular polygon, (corners, 2)."""
     angle = turn + np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
