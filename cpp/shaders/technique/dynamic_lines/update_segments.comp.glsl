@@ -20,8 +20,10 @@ layout(std430, binding = 4) readonly buffer Offsets {
     uint offsets[];
 };
 layout(std430, binding = 5) writeonly buffer Segments {
-    LineSegment segments[];
+    LineSegment segments[];  // from first_place on
 };
+uniform uint first_word;
+uniform uint first_place;
 
 // Where a vertex that is kept stands among those.
 uint place_in_kept(uint vertex) {
@@ -45,11 +47,12 @@ LineSegment segment_at(uint at) {
 }
 
 void main() {
-    uint word = this_item();
-    if (word >= item_count) return;
+    uint item = this_item();
+    if (item >= item_count) return;
+    uint word = first_word + item;
     uint mask = masks[word];
     if (mask == 0u) return;
-    uint at = offsets[word];
+    uint at = offsets[word] - first_place;
     do {
         segments[at++] = segment_at(32u * word + uint(findLSB(mask)));
         mask &= mask - 1u;

@@ -13,6 +13,8 @@ namespace decalgl {
 namespace {
 
 constexpr uint32_t word_bits = 32;
+// Segments, so that parts of their buffer begin where every driver lets them.
+constexpr uint32_t place_alignment = 256 / sizeof(LineSegment);
 
 uint32_t words_of(uint32_t items) {
     return (items + word_bits - 1) / word_bits;
@@ -23,12 +25,15 @@ uint32_t with_room(uint32_t needed, uint32_t most) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(needed + uint64_t{needed} / 2, 1, std::max(most, 1U)));
 }
 
-void require_block(uint64_t bytes, const char* what) {
-    const auto limit = static_cast<uint64_t>(gl::Context::require_current().info().max_storage_block_bytes);
-    if (bytes > limit)
+uint64_t most_storage_bytes() {
+    return static_cast<uint64_t>(gl::Context::require_current().info().max_storage_block_bytes);
+}
+
+void require_block_of_vertices(uint64_t bytes) {
+    if (bytes > most_storage_bytes())
         throw Error(ErrorKind::memory,
-                    std::string("dynamic lines: the ") + what + " that this view shows need " +
-                        format_bytes(bytes) + ", more than the " + format_bytes(limit) +
+                    "dynamic lines: the vertices that this view shows need " + format_bytes(bytes) +
+                        ", more than the " + format_bytes(most_storage_bytes()) +
                         " that this driver binds at once; draw fewer lines, or look closer");
 }
 
@@ -92,7 +97,7 @@ void SegmentUpdate::keep_vertices(const View& view, gl::ProgramLibrary& programs
     const gl::PassTimer timer(view.timings, "dynamic: compact vertices");
     kept_count_ = add_up(vertices_, words, programs);
     if (!kept_ || kept_count_ > kept_room_) {
-        require_block(sizeof(uint32_t) * uint64_t{kept_count_}, "vertices");
+        require_block_of_vertices(sizeof(uint32_t) * uint64_t{kept_count_});
         kept_ = gl::Buffer();
         kept_room_ = with_room(kept_count_, lines_->vertex_count);
         kept_ = gl::Buffer::create(memory_, "dynamic: update", sizeof(uint32_t) * size_t{kept_room_});
@@ -126,7 +131,6 @@ void SegmentUpdate::keep_segments(const View& view, LineReach reach, gl::Program
     const gl::PassTimer timer(view.timings, "dynamic: compact segments");
     const uint32_t count = add_up(segments_, words, programs);
     if (!list_.count || count > segment_room_) {
-        require_block(sizeof(LineSegment) * uint64_t{count}, "segments");
         list_ = SegmentList();
         segment_room_ = with_room(count, lines_->segment_count);
         list_.segments = gl::TextureBuffer::create(memory_, "dynamic: segments", GL_RGBA32UI,
@@ -140,11 +144,30 @@ void SegmentUpdate::keep_segments(const View& view, LineReach reach, gl::Program
     bind_vertices(program, *lines_);
     program.set("line_records", 1);
     lines_->lines.bind(1);
-    const gl::Buffer* buffers[] = {&vertices_.masks, &vertices_.offsets, &kept_,
-                                   &segments_.masks, &segments_.offsets, &list_.segments.buffer()};
-    for (GLuint i = 0; i < 6; ++i)
+    const gl::Buffer* buffers[] = {&vertices_.masks, &vertices_.offsets, &kept_, &segments_.masks,
+                                   &segments_.offsets};
+    for (GLuint i = 0; i < 5; ++i)
         buffers[i]->bind_base(GL_SHADER_STORAGE_BUFFER, i);
-    dispatch(program, words);
+    write_segments(program, words);
+}
+
+// As many words of the mask at a time as name segments for one block of the driver's.
+void SegmentUpdate::write_segments(gl::Program& program, uint32_t words) {
+    const auto block = static_cast<uint32_t>(most_storage_bytes() / sizeof(LineSegment));
+    const uint32_t most_words = (block - place_alignment) / word_bits;
+    for (uint32_t first = 0; first < words; first += most_words) {
+        uint32_t place = 0;
+        if (first > 0)
+            segments_.offsets.read(sizeof(uint32_t) * first, sizeof(uint32_t), &place);
+        if (place == list_.most)
+            return;
+        place -= place % place_alignment;
+        program.set("first_word", first);
+        program.set("first_place", place);
+        bind_records(5, list_.segments.buffer(), sizeof(LineSegment), place,
+                     std::min(block, segment_room_ - place));
+        dispatch(program, std::min(words - first, most_words));
+    }
 }
 
 void SegmentUpdate::report(UpdateReport& report) const {

@@ -47,6 +47,7 @@ private:
 
     void keep_vertices(const View& view, gl::ProgramLibrary& programs);
     void keep_segments(const View& view, LineReach reach, gl::ProgramLibrary& programs);
+    void write_segments(gl::Program& program, uint32_t words);
     uint32_t add_up(const Selection& selection, uint32_t words, gl::ProgramLibrary& programs);
 
     const MatchedLines* lines_;
