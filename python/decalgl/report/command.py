@@ -26,8 +26,8 @@ NOTE = (
 )
 STEPS_KNOWN = ("tiny", "offline", "small", "medium", "large")
 # Of the full report there are 1500 pictures and 64 references: larger ones would make hours days.
-PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (480, 270), "full": (640, 360)}
-CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 9), "quick": (80, 45), "full": (80, 45)}
+PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (400, 225), "full": (640, 360)}
+CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 9), "quick": (64, 36), "full": (80, 45)}
 RUNS: dict[Size, int] = {"tiny": 1, "quick": 2, "full": 3}
 
 
