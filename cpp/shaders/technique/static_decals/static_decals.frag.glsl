@@ -56,12 +56,12 @@ vec4 seen_color(LatticePosition position, mat2 foot, inout float kind) {
     return result.color;
 #elif defined(THOENY)
     return composite_thoeny(position, foot);
-#elif defined(CELLS)
-    return composite_area(position, foot);
 #elif defined(POINTS)
     return composite_points(position, foot, 0);
 #elif defined(FROM_LEVELS)
     return composite_levels(position, foot);
+#elif defined(CELLS)
+    return composite_area(position, foot);
 #else
     return color_at(position);
 #endif
