@@ -68,6 +68,10 @@ class Border:
         near = np.abs(distance) < self.reach
         bins = np.linspace(-self.reach, self.reach, 65)
         counts = np.histogram(distance[near], bins)[0]
+        if counts.min() <= 3:
+            raise dg.InputError(
+                "A step across the border is met by three pixels or fewer; take a larger picture."
+            )
         off = np.abs(frame.image[..., 0] / 255.0 - (distance > 0.0))
         means = np.histogram(distance[near], bins, weights=off[near])[0] / counts
         return 4.0 * float(means.sum() * (bins[1] - bins[0]))
