@@ -43,9 +43,11 @@ macro(decalgl_require package debian_package)
 endmacro()
 
 # Warnings, and contraction off: a fused multiply-add on one machine and not on another would make
-# preprocessing depend on the machine.
+# preprocessing depend on the machine. Nobody reads errno or floating-point exceptions, and loops that keep them are not
+# vectorised.
 function(decalgl_settings target)
-    target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -ffp-contract=off
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -ffp-contract=off -fno-math-errno
+                           -fno-trapping-math
                            $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor>)
     if(DECALGL_WERROR)
         target_compile_options(${target} PRIVATE -Werror)

@@ -28,6 +28,7 @@ int samples_across(const PreparedDecals& decals, int level) {
 CellPoints<float> samples_of(int level, int side) {
     CellPoints<float> cell;
     cell.level = level;
+    cell.side = static_cast<size_t>(side);
     const float step = static_cast<float>(cell_quanta(level)) / static_cast<float>(side);
     for (int i = 0; i < side * side; ++i) {
         const auto seed = static_cast<uint32_t>(i + 97 * level);

@@ -2,6 +2,7 @@
 // for picking, in single for the many points of levels of detail.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "technique/static_decals/style_reader.h"
@@ -9,12 +10,13 @@
 
 namespace decalgl {
 
-// A cell, and points in quanta from its corner.
+// A cell, and points in quanta from its corner: rows of `side`, each in its own square of the cell, or one anywhere.
 template <typename Real>
 struct CellPoints {
     int level = 0;
     int64_t bucket_column = 0, bucket_row = 0;
     Vector2 corner{};  // of the cell, in quanta from that of its bucket
+    size_t side = 1;
     std::vector<Real> x, y;
 };
 
@@ -115,13 +117,25 @@ private:
             shares_[point] = std::min(shares_[point], static_cast<Real>(share));
     }
 
+    // Those rows of points that may lie from y to y, in the group's coordinates, and one past them.
+    std::pair<size_t, size_t> rows_between(Real low, Real high) const {
+        if (cell_.side == 1 || is_tangent_)
+            return {0, cell_.side};
+        const Real rows = static_cast<Real>(cell_.side);
+        const Real per_quantum = rows / (static_cast<Real>(cell_quanta(cell_.level)) * unit_);
+        const Real first = std::clamp((low - bias_) * per_quantum, Real(0), rows);
+        const Real last = std::clamp((high - bias_) * per_quantum + 1, Real(0), rows);
+        return {static_cast<size_t>(first), static_cast<size_t>(last)};
+    }
+
     void add_capsule(Vector2 from, Vector2 to) {
         const auto x0 = static_cast<Real>(from.x), y0 = static_cast<Real>(from.y);
         const auto dx = static_cast<Real>(to.x - from.x), dy = static_cast<Real>(to.y - from.y);
         const auto radius = static_cast<Real>(style_.half_width());
         const Real per_length2 = 1 / std::max(dx * dx + dy * dy, Real(1e-6)), radius2 = radius * radius;
         const bool has_bands = style_.is(STYLE_BANDS);
-        for (size_t i = 0; i < shares_.size(); ++i) {
+        const auto [first, last] = rows_between(std::min(y0, y0 + dy) - radius, std::max(y0, y0 + dy) + radius);
+        for (size_t i = first * cell_.side; i < last * cell_.side; ++i) {
             const Real px = at_x_[i] - x0, py = at_y_[i] - y0;
             const Real t = std::clamp((px * dx + py * dy) * per_length2, Real(0), Real(1));
             const Real ex = px - t * dx, ey = py - t * dy, apart2 = ex * ex + ey * ey;
