@@ -91,6 +91,14 @@ LAYER_PASSES = (
     "fields",
     "stylize",
 )
+# What follows from the view and the lines' places and widths, whatever their colours.
+VIEW_PASSES = (
+    "fields",
+    *(
+        f"dynamic: {step}"
+        for step in ("simplify", "compact vertices", "cull", "compact segments", "project", "bins")
+    ),
+)
 
 
 @dataclass(frozen=True)
@@ -98,12 +106,13 @@ class Needs:
     """What a frame takes.
 
     passes: beside those of the layers. uploads: bytes that buffers and textures need to take. layers: whether the
-    layers are drawn at all. style: what flags are for.
+    layers are drawn at all. view: whether that follows from the view anew. style: what flags are for.
     """
 
     passes: frozenset[str]
     uploads: int
     layers: bool = True
+    view: bool = True
     style: str = "one colour"
 
 
@@ -170,7 +179,8 @@ def _changes(name: str) -> Iterator[Row]:
     yield _row(name, "unchanged", frame(), Needs(frozenset(), 0, layers=False))
     renderer.restyle("ways", color="navy")
     looks = frozenset({"upload", "compose", "readback"})
-    yield _row(name, "another colour", frame(), Needs(looks, view + LOOK_BYTES * FEATURES))
+    needs = Needs(looks, view + LOOK_BYTES * FEATURES, view=False)
+    yield _row(name, "another colour", frame(), needs)
 
 
 def _weighed(name: str) -> Row:
@@ -216,7 +226,8 @@ def surplus(
     found = []
     for each in passes:
         of_layers = each.split(":")[0].split(" ")[0] in LAYER_PASSES
-        if not (needs.layers if of_layers else each in needs.passes):
+        needed = needs.layers and (needs.view or each not in VIEW_PASSES)
+        if not (needed if of_layers else each in needs.passes):
             found.append(f"pass {each}")
     for program in programs:
         flags = program.rstrip("]").split("[")[1].split(",") if "[" in program else []

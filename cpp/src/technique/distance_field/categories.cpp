@@ -204,9 +204,22 @@ void write_texels(const DistanceFieldOptions& options, CategoryTable& table) {
         table.texels.push_back(texel(category.sketch.amplitude, reach > 0.0 ? 1.0 : 0.0, 0.0, 0.0));
     }
     table.texels.insert(table.texels.end(), rest.begin(), rest.end());
+    table.shapes = table.texels;
+    for (size_t i = 0; i < table.categories.size(); ++i) {
+        const StyleTexel& header = table.texels[i * CATEGORY_TEXELS];
+        for (size_t tuple = 0; tuple < table.categories[i].styles.size(); ++tuple) {
+            const size_t first = static_cast<size_t>(header[0]) + tuple * TUPLE_TEXELS;
+            table.shapes[first + 1] = table.shapes[first + 2] = {};
+        }
+    }
 }
 
 }  // namespace
+
+bool same_fields(const CategoryTable& a, const CategoryTable& b) {
+    return a.shapes == b.shapes && std::equal(a.slots.begin(), a.slots.end(), b.slots.begin(), b.slots.end(),
+                                              [](Slot x, Slot y) { return x.category == y.category; });
+}
 
 double widest_half_width(const NetworkCategory& category) {
     double widest = 0.0;

@@ -25,15 +25,19 @@ struct CategoryTable {
     std::vector<uint32_t> ordered;  // slots, from the bottom to the top
     std::vector<Slot> slots;        // of the features of all layers
     std::vector<StyleTexel> texels;
-    double reach = 0.0;    // metres: the widest half width
-    bool lengths = false;  // whether any style runs along the line
-    bool slopes = false;   // whether any width follows the slope
+    std::vector<StyleTexel> shapes;  // the same without colours: all that fields depend on
+    double reach = 0.0;              // metres: the widest half width
+    bool lengths = false;            // whether any style runs along the line
+    bool slopes = false;             // whether any width follows the slope
 
     const NetworkCategory& of(Slot slot) const { return categories[slot.category]; }
 };
 
 // Throws Error(style) or Error(unsupported) for what cannot be drawn.
 CategoryTable make_categories(Span<const Layer> layers, const DistanceFieldOptions& options);
+
+// Whether the fields of a picture hold the same by both tables.
+bool same_fields(const CategoryTable& a, const CategoryTable& b);
 
 // The widest half width of a category, and that at a level of detail.
 double widest_half_width(const NetworkCategory& category);

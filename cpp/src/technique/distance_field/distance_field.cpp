@@ -1,6 +1,7 @@
 #include "technique/distance_field/distance_field.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -147,6 +148,7 @@ void DistanceField::upload(std::shared_ptr<const Prepared> prepared, std::shared
 }
 
 UpdateReport DistanceField::update(const View&) {
+    drawn_.prepared = nullptr;
     UpdateReport report;
     report.pieces = outside_.prepared->network->segments.size();
     report.bytes = outside_.bytes() + targets_.bytes();
@@ -247,10 +249,21 @@ void DistanceField::draw_boxes(const Side& side, const gl::Flags& flags, const V
     glDisable(GL_DEPTH_CLAMP);
 }
 
+// Of the latest update: those of a recolour and of a lens with other colours alone are there already.
+bool DistanceField::holds_fields(const Side& side) const {
+    return drawn_.prepared && drawn_.prepared->network == side.prepared->network &&
+           drawn_.prepared->options == side.prepared->options &&
+           same_fields(drawn_.prepared->table, side.prepared->table);
+}
+
 void DistanceField::draw_fields(const Side& side, const View& view, const GBufferView& gbuffer,
                                 gl::ProgramLibrary& programs) {
-    const gl::PassTimer timer(view.timings, "fields");
     const FieldFormat format = format_for(side, view, gbuffer);
+    if (targets_.format() == format && holds_fields(side) &&
+        std::memcmp(&drawn_.block, view.block, sizeof(ViewBlock)) == 0)
+        return;
+    const gl::PassTimer timer(view.timings, "fields");
+    drawn_.prepared = nullptr;
     if (!(targets_.format() == format)) {
         targets_ = {};  // both at once may not fit
         targets_ = FieldTargets(format, memory_);
@@ -280,6 +293,8 @@ void DistanceField::draw_fields(const Side& side, const View& view, const GBuffe
     glDisable(GL_BLEND);
     glDepthFunc(GL_GREATER);
     glDisable(GL_DEPTH_TEST);
+    drawn_.prepared = side.prepared;
+    drawn_.block = *view.block;
 }
 
 void DistanceField::stylize(const Side& side, const View& view, const GBufferView& gbuffer,
@@ -336,8 +351,10 @@ void DistanceField::draw(const View& view, const GBufferView& gbuffer, gl::Progr
     if (!view.has_below)
         glClearBufferfv(GL_COLOR, 0, nothing);
     const bool is_gathered = static_cast<bool>(gbuffer.set_gathered);
-    if (!is_gathered)
-        drawn_ = {gbuffer.position, gbuffer.surface};
+    if (!is_gathered) {
+        drawn_.position = gbuffer.position;
+        drawn_.surface = gbuffer.surface;
+    }
     const auto draw_side = [&](const Side& side, LensSide lens_side) {
         if (!side.prepared->shows_anything())
             return;

@@ -14,6 +14,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "shared/view_block.h"
 #include "technique/distance_field/field_targets.h"
 #include "technique/distance_field/prepared_network.h"
 
@@ -29,6 +30,7 @@ public:
     void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                 const TerrainView& terrain, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
+    bool keeps_update() const override { return holds_fields(outside_); }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
@@ -73,11 +75,15 @@ private:
     void set_styles(const Side& side, const View& view, const GBufferView& gbuffer,
                     gl::Program& program) const;
 
-    // The G-buffer that the fields were drawn over last: of texels that are gathered from it, they are read.
+    // What the fields were drawn from last. Of the G-buffer, texels that are gathered from it are read.
     struct Drawn {
         const gl::Texture2D* position = nullptr;
         const gl::Texture2D* surface = nullptr;
+        std::shared_ptr<const network::PreparedNetwork> prepared;
+        ViewBlock block;
     };
+
+    bool holds_fields(const Side& side) const;
 
     Side outside_;
     Side inside_;
