@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -97,6 +98,16 @@ def test_medians_come_with_their_spread() -> None:
     times = iter([9.0, 10.0, 12.0, 8.0, 11.0, 9.0])
     found = interleaved(5, lambda: {"some_ms": next(times)})
     assert found == {"some_ms": 10.0, "some_ms_spread": pytest.approx(0.1)}
+
+
+def test_what_takes_too_long_is_measured_once() -> None:
+    def slow() -> dict[str, float]:
+        time.sleep(0.02)
+        return {"slow_ms": 20.0}
+
+    quick = iter([5.0, 1.0, 2.0, 3.0])
+    found = interleaved(3, slow, lambda: {"quick_ms": next(quick)}, patience=0.01)
+    assert found == {"quick_ms": 2.0, "quick_ms_spread": 0.25, "slow_ms": 20.0}
 
 
 def results(floor: float, time: float, size: int, spread: float = 0.01) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import platform
 import shutil
@@ -28,20 +29,29 @@ LAYER_PASSES = ("static", "static_bvh", "dynamic", "loops", "volume", "clipmap",
 SMALL_PICTURE = (16, 16)
 
 
-def interleaved(runs: int, *measures: Measure) -> Times:
+def interleaved(runs: int, *measures: Measure, patience: float = math.inf) -> Times:
     """The medians of all that the measures give, over `runs` rounds in which each runs once, and their spreads.
 
-    A first round is thrown away. `name`_spread, of times with names in _ms, is half of what lies between the quartiles,
-    as a share of the median; one round has none.
+    A first round is thrown away, but of measures that take longer in it than `patience` seconds: they are not repeated.
+    `name`_spread, of times with names in _ms, is half of what lies between the quartiles, as a share of the median; one
+    round has none.
     """
+    repeated: list[Measure] = []
+    once: Times = {}
     for measure in measures:
-        measure()
-    rounds = [{name: ms for measure in measures for name, ms in measure().items()} for _ in range(runs)]
+        started = time.monotonic()
+        times = measure()
+        if time.monotonic() - started <= patience:
+            repeated.append(measure)
+        else:
+            once.update(times)
+    rounds = [{name: ms for measure in repeated for name, ms in measure().items()} for _ in range(runs)]
     medians = {name: statistics.median(times[name] for times in rounds) for name in rounds[0]}
     if runs == 1:
-        return medians
+        return {**medians, **once}
     timed = [name for name, value in medians.items() if name.endswith("_ms") and value > 0.0]
-    return {**medians, **{f"{name}_spread": spread([times[name] for times in rounds]) for name in timed}}
+    spreads = {f"{name}_spread": spread([times[name] for times in rounds]) for name in timed}
+    return {**medians, **spreads, **once}
 
 
 def spread(values: list[float]) -> float:

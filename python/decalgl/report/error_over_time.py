@@ -24,15 +24,17 @@ if TYPE_CHECKING:
     from .settings import Setting
 
 TITLE = "Error against run time"
+TOGETHER = 6  # renderers that are held at once
+PATIENCE = 4.0  # seconds: frames that take longer are drawn once
 ABOUT = (
     "Each point is a technique with a setting. Time is that of a whole frame, and of what it adds to"
     " terrain and composing, both divided by the floor, a pass that reads depth and writes a colour for every"
-    " pixel. The error is the root mean square of the difference to the reference, of 1, over the pixels of a crop that"
+    f" pixel; frames of more than {PATIENCE:g} seconds are drawn once. The error is the root mean square of the"
+    " difference to the reference, of 1, over the pixels of a crop that"
     " a border passes (an edge's), over all pixels of the crop (the image's), and of the coverage alone. Dynamic lines"
     " are as wide as on the screen and are compared with a reference that draws them so; techniques that draw only"
     " lines leave polygons to static, and are left out where there are no lines."
 )
-TOGETHER = 6  # renderers that are held at once
 
 
 def rows(context: Context) -> list[Row]:
@@ -114,7 +116,8 @@ def _time(
             drawing(renderers[setting.prepared], camera, setting.antialias, f"{setting.group}/{setting.name}")
             for setting in batch
         ]
-        times = interleaved(context.runs, *measures, floor(renderers[batch[0].prepared]))
+        floor_of_all = floor(renderers[batch[0].prepared])
+        times = interleaved(context.runs, *measures, floor_of_all, patience=PATIENCE)
         for setting in batch:
             name = f"{setting.group}/{setting.name}"
             row = by_key[setting.group, setting.name, view]
