@@ -142,11 +142,11 @@ def test_comparing_tells_changes_from_noise(
 def test_each_part_of_a_report_has_its_own_drift() -> None:
     """A machine that was busy during one part makes no other part look quicker; rows are told apart by all words."""
     before, after = results(5.0, 10.0, 1000), results(10.0, 20.0, 1000)
-    for run, time in ((before, 7.0), (after, 7.1)):
+    for run, ms in ((before, 7.0), (after, 7.1)):
         words = {"part": "quiet", "scene": "town", "setting": "none"}
         run["records"] += [
             {**words, "view": "top", "floor_ms": 5.0},
-            {**words, "draw_ms": time, "draw_ms_spread": 0.0},
+            {**words, "draw_ms": ms, "draw_ms_spread": 0.0},
         ]
     assert not comparison.compare(before, after).changes[-1].better
     slower = {**after, "records": [*after["records"][:-1], {**after["records"][-1], "draw_ms": 8.0}]}
