@@ -38,9 +38,10 @@ def stored(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def test_no_technique_runs_what_a_scene_does_not_need() -> None:
-    names = ("static", "static bvh", "dynamic lists", "distance_field")
+    names = tuple(needless.WAYS)
     rows = [row for name in names for row in needless.states(name)]
     assert [(row["technique"], row["scene"], row["needless"]) for row in rows if row["needless"]] == []
+    assert len(rows) == 91, "docs/extremes.md names them"
     assert {row["scene"] for row in rows} >= {"hidden", "nothing in view", "unchanged", "another colour"}
     figures = needless.figures(stored(rows))
     assert figures[0].table is None
