@@ -75,6 +75,8 @@ RATIOS = {
     "edit": Ratio("{edit_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
     "lens": Ratio("{lens_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms"),
     "restyled": Ratio("{restyled_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms", most=2.0),
+    "widen": Ratio("{widen_ms:.1f} ms ÷ a frame of {frame_ms:.0f} ms", most=1.0),
+    "widened": Ratio("{widened_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms", most=2.0),
     "reorder": Ratio("{reorder_ms:.0f} ms ÷ a frame of {frame_ms:.0f} ms"),
     "ring": Ratio("{preprocess_ms:.0f} ms ÷ iso-bands {bands_ms:.0f} ms, by vertices", most=1.0),
     "style": Ratio("{style_ms:.1f} ms ÷ plain {plain_ms:.1f} ms"),

@@ -78,9 +78,11 @@ STACKS = {
     "alpha 1/255": "{faint_ms:.1f} ms",
 }
 CHANGES = {
-    "scene": "{scene}",
+    **WHERE,
     "new colours": "{restyle:.2f}",
     "the picture after": "{restyled:.2f}",
+    "other widths": "{widen:.2f}",
+    "the picture after them": "{widened:.2f}",
     "a filter": "{filter:.2f}",
     "100 features moved": "{edit:.2f}",
     "a draw order": "{reorder:.2f}",
@@ -285,7 +287,7 @@ def styles(results: Results) -> str:
 
 
 def changes(results: Results) -> str:
-    """What changes of a map take, in frames of the view of all of it."""
+    """What changes of a map take, in frames of the view."""
     return "\n\n".join(
         [_table(_having(results, "restyle", techniques=("static", "bvh")), CHANGES), machine(results)]
     )

@@ -3,7 +3,9 @@
 restyle     new colours of all features ÷ a frame          filter    half of them hidden ÷ a frame
 edit        a hundred neighbours moved ÷ a frame           lens      the lens moved, and drawn ÷ a frame
 reorder     all features in another draw order ÷ a frame
-restyled    the first picture after a restyle ÷ a frame: where it shows levels of detail, they are coloured anew
+restyled    the first picture after new colours ÷ a frame: where it shows levels of detail, they are coloured anew
+widen       other widths of all features ÷ a frame
+widened     the first picture after that ÷ a frame: levels of detail are found anew
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ import numpy as np
 import decalgl as dg
 
 from ..measure import draw, interleaved
-from ..workload import add_lines, line_table
+from ..workload import LINE_WIDTH, add_lines, line_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,8 +32,13 @@ SEGMENTS = 5  # of a line
 MOST_FEATURES = 1_000_000
 EDITED = 100
 COLORS = ("crimson", "teal")
-VIEW = "overview"
-MODES = {"grid": ("none", "coverage"), "bvh": ("none",)}
+WIDTHS = (0.9 * LINE_WIDTH, LINE_WIDTH)
+# By index, anti-aliasing and view; far away with coverage there is nothing but levels of detail.
+CASES = {
+    "grid": (("none", "overview"), ("coverage", "overview"), ("coverage", "far")),
+    "bvh": (("none", "overview"),),
+}
+CHANGES = ("restyle", "restyled", "widen", "widened", "filter", "edit", "lens", "reorder")
 TECHNIQUES = {"grid": "static", "bvh": "bvh"}
 
 
@@ -39,25 +46,26 @@ def measure(work: Workload, records: Records) -> None:
     table = _short_lines(line_table(work.contours("isolines", work.middle)))
     work.say(f"{len(table):,} features")
     scene = dg.Scene(work.ground)
-    layer = add_lines(scene, table)
-    for index, modes in MODES.items():
+    layer = add_lines(scene, table, widest=LINE_WIDTH)
+    for index, cases in CASES.items():
         renderer = work.renderer(scene, index)
-        for antialias in modes:
-            draw(renderer, work.views[VIEW], antialias)
-            times = interleaved(work.runs, *_changes(renderer, layer, work, antialias))
-            frame = times["frame_ms"]
+        for antialias, view in cases:
+            draw(renderer, work.views[view], antialias)
+            times = interleaved(work.runs, *_changes(renderer, layer, work, antialias, view))
             name = "" if index == "grid" else f', index="{index}"'
-            record = records.at(f"{len(table):,} short lines, {antialias}{name}", VIEW, TECHNIQUES[index])
+            record = records.at(f"{len(table):,} short lines, {antialias}{name}", view, TECHNIQUES[index])
             record.update(times)
-            for change in ("restyle", "filter", "edit", "lens", "reorder", "restyled"):
-                record[change] = times[f"{change}_ms"] / frame
+            for change in CHANGES:
+                record[change] = times[f"{change}_ms"] / times["frame_ms"]
         del renderer
 
 
-def _changes(renderer: dg.Renderer, layer: dg.Layer, work: Workload, antialias: str) -> list[Measure]:
+def _changes(
+    renderer: dg.Renderer, layer: dg.Layer, work: Workload, antialias: str, view: str
+) -> list[Measure]:
     count = len(layer.features)
     random = np.random.default_rng(1)
-    colors = itertools.cycle(COLORS)
+    colors, widths = itertools.cycle(COLORS), itertools.cycle(WIDTHS)
     firsts = itertools.cycle(range(0, max(count - EDITED, 1), EDITED))
 
     def edit() -> None:
@@ -81,9 +89,11 @@ def _changes(renderer: dg.Renderer, layer: dg.Layer, work: Workload, antialias: 
         renderer.render()
 
     return [
-        _timed("frame", lambda: draw(renderer, work.views[VIEW], antialias)),
+        _timed("frame", lambda: draw(renderer, work.views[view], antialias)),
         _timed("restyle", lambda: renderer.restyle(layer, color=next(colors))),
         _timed("restyled", renderer.render),
+        _timed("widen", lambda: renderer.restyle(layer, width=next(widths))),
+        _timed("widened", renderer.render),
         _timed("filter", lambda: renderer.restyle(layer, visible=random.random(count) < 0.5)),
         _timed("reorder", lambda: renderer.restyle(layer, order=random.random(count))),
         _timed("edit", edit),
