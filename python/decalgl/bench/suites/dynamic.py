@@ -32,6 +32,7 @@ WIDTH = 2.0
 VIEWS = ("overview", "oblique", "close")
 PICTURES = (2.0 / 3.0, 1.0, 2.0)  # of the run's picture: 1280 x 720 to 3840 x 2160
 STEPS = ("simplify", "compact vertices", "cull", "compact segments", "project", "bins")
+PATIENCE = 10.0  # seconds: frames that take longer are drawn once
 # Segments of a piece of a line, of which fewer lines are made: few lines lie as the many do.
 PIECE = 100
 # What each method holds for a view.
@@ -51,9 +52,9 @@ class Lines:
 
 def measure(work: Workload, records: Records) -> None:
     smallest = next(iter(work.sizes))
-    chosen = [Lines(0.01, smallest, 2, 3), Lines(0.1, smallest, 2, 2), Lines(1.0, smallest, 1, 2, 2)]
+    chosen = [Lines(0.01, smallest, 2, 3), Lines(0.1, smallest, 2, 2), Lines(1.0, smallest, 2, 2, 2)]
     if work.middle != smallest:
-        chosen.append(Lines(1.0, work.middle, 0, 1, 1))
+        chosen.append(Lines(1.0, work.middle, 1, 1, 1))
     for lines in chosen:
         arrays = work.contours("isolines", lines.size)
         table = some_lines(arrays, lines.share)
@@ -86,11 +87,10 @@ def measure_scene(
         measures = [passes_of(renderers["bins"], camera, "none", "bins")]
         if place < lines.coverage_in:
             measures.append(passes_of(renderers["bins"], camera, "coverage", "coverage"))
-        held: dict[str, float] = {}
-        if "lists" in ways and lists_fit(renderers["lists"], camera):
+        held = lists_held(renderers["lists"], camera, picture) if "lists" in ways else {}
+        if held:
             measures.append(passes_of(renderers["lists"], camera, "none", "lists"))
-            held = sizes_of(draw(renderers["lists"], camera, "none").stats, "lists", picture)
-        times = interleaved(min(work.runs, lines.runs), *measures)
+        times = interleaved(min(work.runs, lines.runs), *measures, patience=PATIENCE)
         records.at(name, view, "dynamic").update(
             {
                 "picture": f"{picture[0]} x {picture[1]}",
@@ -172,13 +172,12 @@ def measure_simplification(work: Workload, records: Records, table: dg.FeatureTa
         )
 
 
-def lists_fit(renderer: dg.Renderer, camera: dg.Camera) -> bool:
-    """Whether the driver binds the lists of a view at once."""
+def lists_held(renderer: dg.Renderer, camera: dg.Camera, picture: tuple[int, int]) -> dict[str, float]:
+    """What the lists of a view hold, grown to what it needs; nothing where the driver cannot bind them."""
     try:
-        draw(renderer, camera, "none")
+        return sizes_of(draw(renderer, camera, "none").stats, "lists", picture)
     except MemoryError:
-        return False
-    return True
+        return {}
 
 
 def some_lines(arrays: Arrays, share: float) -> dg.FeatureTable:
