@@ -78,12 +78,13 @@ const BucketSamples& BucketSampler::sample(uint32_t bucket) {
 void BucketSampler::read_cell(ListReader<float>& reader, uint32_t list) {
     branches_.assign(1, Branch{});
     std::fill(branch_of_.begin(), branch_of_.end(), root);
-    reader.read(decals_.list(list), [&](uint32_t slot, const StyleReader& style, const auto& shares) {
-        const size_t first_of_slot = branches_.size();
-        for (size_t i = 0; i < shares.size(); ++i)
-            if (shares[i] <= 1.0F)
-                lower(branch_of_[i], slot, style.band(double{shares[i]}), first_of_slot);
-    });
+    reader.read(decals_.list(list),
+                [&](uint32_t slot, const StyleReader& style, const auto& shares, PointRange points) {
+                    const size_t first_of_slot = branches_.size();
+                    for (size_t i = points.first; i < points.last; ++i)
+                        if (shares[i] <= 1.0F)
+                            lower(branch_of_[i], slot, style.band(double{shares[i]}), first_of_slot);
+                });
 }
 
 // Onto the branch of one more decal, which other samples may have led to already.

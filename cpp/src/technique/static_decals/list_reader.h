@@ -2,7 +2,8 @@
 // for picking, in single for the many points of levels of detail.
 #pragma once
 
-#include <utility>
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "technique/static_decals/style_reader.h"
@@ -20,6 +21,11 @@ struct CellPoints {
     std::vector<Real> x, y;
 };
 
+// Of points, those from `first` to before `last`.
+struct PointRange {
+    size_t first = 0, last = 0;
+};
+
 template <typename Real>
 class ListReader {
 public:
@@ -32,15 +38,16 @@ public:
           bias_(static_cast<Real>(cell_bias(cell.level))),
           at_x_(cell.x.size()),
           at_y_(cell.x.size()),
-          shares_(cell.x.size()),
-          open_(cell.x.size()) {}
+          shares_(cell.x.size(), none_),
+          open_(cell.x.size(), true) {}
 
-    // Calls on_group(slot, shares) for the decals of a list, topmost first. A share is that of the half width at which
-    // the stroke covers the point, 0 where a fill does, and above 1 where nothing does.
+    // Calls on_group(slot, style, shares, points) for the decals of a list, topmost first. A share is that of the half
+    // width at which the stroke covers the point, 0 where a fill does, and above 1 where nothing does; of other points than
+    // those from points.first to before points.last all are.
     template <typename OnGroup>
     void read(Span<const uint32_t> words, OnGroup on_group) {
-        std::fill(open_.begin(), open_.end(), true);
         bool begun = false;
+        follows_clip_ = false;
         for (const uint32_t word : words) {
             if ((word & HEADER) == 0) {
                 read_point(word);
@@ -66,7 +73,10 @@ private:
         if (style_.is(STYLE_THOENY))
             style_.multiply_width(slope_.thoeny_width());
         has_incoming_ = awaits_phase_ = false;
-        std::fill(shares_.begin(), shares_.end(), (header & COVERS) != 0 ? Real(0) : none_);
+        if ((header & COVERS) != 0)
+            std::fill(shares_.begin(), shares_.end(), Real(0));
+        const bool is_plain_stroke = is_line_ && (header & COVERS) == 0 && !style_.is(STYLE_JOINED);
+        met_ = is_plain_stroke ? PointRange{shares_.size(), 0} : PointRange{0, shares_.size()};
         const Real unit = is_line_ ? std::ldexp(Real(1), -style_.scale()) : Real(1);
         const bool is_tangent = is_line_ && style_.is(STYLE_TANGENT);
         if (unit == unit_ && is_tangent == is_tangent_)
@@ -117,15 +127,15 @@ private:
             shares_[point] = std::min(shares_[point], static_cast<Real>(share));
     }
 
-    // Those rows of points that may lie from y to y, in the group's coordinates, and one past them.
-    std::pair<size_t, size_t> rows_between(Real low, Real high) const {
+    // Those rows of points that may lie from y to y, in the group's coordinates.
+    PointRange points_between(Real low, Real high) const {
         if (cell_.side == 1 || is_tangent_)
-            return {0, cell_.side};
+            return {0, shares_.size()};
         const Real rows = static_cast<Real>(cell_.side);
         const Real per_quantum = rows / (static_cast<Real>(cell_quanta(cell_.level)) * unit_);
         const Real first = std::clamp((low - bias_) * per_quantum, Real(0), rows);
         const Real last = std::clamp((high - bias_) * per_quantum + 1, Real(0), rows);
-        return {static_cast<size_t>(first), static_cast<size_t>(last)};
+        return {static_cast<size_t>(first) * cell_.side, static_cast<size_t>(last) * cell_.side};
     }
 
     void add_capsule(Vector2 from, Vector2 to) {
@@ -134,8 +144,10 @@ private:
         const auto radius = static_cast<Real>(style_.half_width());
         const Real per_length2 = 1 / std::max(dx * dx + dy * dy, Real(1e-6)), radius2 = radius * radius;
         const bool has_bands = style_.is(STYLE_BANDS);
-        const auto [first, last] = rows_between(std::min(y0, y0 + dy) - radius, std::max(y0, y0 + dy) + radius);
-        for (size_t i = first * cell_.side; i < last * cell_.side; ++i) {
+        const PointRange near =
+            points_between(std::min(y0, y0 + dy) - radius, std::max(y0, y0 + dy) + radius);
+        met_ = {std::min(met_.first, near.first), std::max(met_.last, near.last)};
+        for (size_t i = near.first; i < near.last; ++i) {
             const Real px = at_x_[i] - x0, py = at_y_[i] - y0;
             const Real t = std::clamp((px * dx + py * dy) * per_length2, Real(0), Real(1));
             const Real ex = px - t * dx, ey = py - t * dy, apart2 = ex * ex + ey * ey;
@@ -192,15 +204,17 @@ private:
         if (is_clip_) {
             for (size_t i = 0; i < shares_.size(); ++i)
                 open_[i] = shares_[i] <= 1;
-            return;
+        } else {
+            const bool hatched = !is_line_ && style_.is(STYLE_HATCH);
+            for (size_t i = met_.first; i < met_.last; ++i)
+                if ((follows_clip_ && !open_[i]) || (hatched && !is_hatched(i)))
+                    shares_[i] = none_;
+            on_group(slot_, style_, shares_, met_);
         }
-        const bool hatched = !is_line_ && style_.is(STYLE_HATCH);
-        for (size_t i = 0; i < shares_.size(); ++i) {
-            if (!open_[i] || (hatched && !is_hatched(i)))
-                shares_[i] = none_;
-            open_[i] = true;
-        }
-        on_group(slot_, style_, shares_);
+        follows_clip_ = is_clip_;
+        if (met_.first < met_.last)
+            std::fill(shares_.begin() + static_cast<std::ptrdiff_t>(met_.first),
+                      shares_.begin() + static_cast<std::ptrdiff_t>(met_.last), none_);
     }
 
     bool is_hatched(size_t point) const {
@@ -218,9 +232,11 @@ private:
     bool is_tangent_ = false;
     std::vector<Real> at_x_, at_y_;  // the points, in the group's coordinates, as it measures them
     std::vector<Real> shares_;
+    PointRange met_;          // those that the group may cover
     std::vector<char> open_;  // not cut off by the clip before
     uint32_t slot_ = 0;
-    bool is_line_ = false, is_clip_ = false, has_incoming_ = false, awaits_phase_ = false;
+    bool is_line_ = false, is_clip_ = false, follows_clip_ = false;
+    bool has_incoming_ = false, awaits_phase_ = false;
     StyleReader style_;
     Vector2 from_{}, incoming_{};
     double periods_ = 0.0;

@@ -48,6 +48,11 @@ public:
         return kinds.empty() ? line_scale(styles[slot].half_width)
                              : static_cast<int>(kinds[slot] & SCALE_MASK);
     }
+    // Whether `kinds` tell shaders what half widths do not. Plain lines that may become wider are scaled for the widest:
+    // where that takes no scale, none does.
+    bool needs_kinds() const {
+        return !kinds.empty() && (has_clips || style_records.size() > 1 || largest_scale > 0);
+    }
     uint32_t rank_of(uint32_t slot) const { return ranks.empty() ? slot : ranks[slot]; }
     // The words of a cell, to LIST_END or their end.
     Span<const uint32_t> list(uint32_t cell_entry) const;

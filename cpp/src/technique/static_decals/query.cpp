@@ -45,7 +45,7 @@ std::vector<FeatureReference> PreparedDecals::query(const SeenPoint& point) cons
         return found;
     const Slope slope({point.gradient_x, point.gradient_y}, point.forward_z);
     ListReader<double>(*this, cell, slope)
-        .read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares) {
+        .read(list(entry), [&](uint32_t slot, const StyleReader&, const auto& shares, PointRange) {
             const FeatureReference feature = slots[slot].feature;
             if (shares[0] <= 1.0 && styles[slot].color[3] != 0 &&
                 std::find(found.begin(), found.end(), feature) == found.end())

@@ -134,7 +134,7 @@ void StaticDecals::draw_levels(const PreparedDecals& look, LevelPainter& painter
 
 // With a lens, its kinds and records follow the others.
 void StaticDecals::upload_records(const PreparedDecals& prepared, const PreparedDecals* lens) {
-    if (prepared.kinds.empty() && (lens == nullptr || lens->kinds.empty())) {
+    if (!prepared.needs_kinds() && (lens == nullptr || !lens->needs_kinds())) {
         kinds_ = gl::TextureBuffer();
         style_records_ = gl::TextureBuffer();
         return;
@@ -304,7 +304,7 @@ void StaticDecals::add_style_flags(gl::Flags& flags) const {
 }
 
 bool StaticDecals::has_styles() const {
-    return any_look([](const PreparedDecals& look) { return !look.kinds.empty(); });
+    return any_look([](const PreparedDecals& look) { return look.needs_kinds(); });
 }
 
 void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
