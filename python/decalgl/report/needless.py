@@ -9,6 +9,7 @@ import numpy as np
 
 import decalgl as dg
 
+from ..bench.suites.dynamic import STEPS
 from .part import Figure, Table, byte_count
 
 if TYPE_CHECKING:
@@ -92,13 +93,7 @@ LAYER_PASSES = (
     "stylize",
 )
 # What follows from the view and the lines' places and widths, whatever their colours.
-VIEW_PASSES = (
-    "fields",
-    *(
-        f"dynamic: {step}"
-        for step in ("simplify", "compact vertices", "cull", "compact segments", "project", "bins")
-    ),
-)
+VIEW_PASSES = ("fields", *(f"dynamic: {step}" for step in STEPS))
 
 
 @dataclass(frozen=True)
