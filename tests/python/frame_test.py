@@ -245,7 +245,7 @@ def variants(scene: dg.Scene, **options: Any) -> set[str]:
 
 
 # Flags of the passes that filter a picture over the pixels' areas.
-AREA_PASSES = {"CLASSES", "CELLS", "POINTS", "FROM_LEVELS", "LEVELS"}
+AREA_PASSES = {"CLASSES", "CELLS", "POINTS", "LEVELS"}
 
 
 def test_nothing_runs_that_the_scene_does_not_need() -> None:

@@ -230,8 +230,8 @@ TEST_CASE("an order of drawing is that of an index built with it", "[static]") {
     layers[1].draw_order = look.draw_order;
     const auto expected = build(layers);
     CHECK(picks(*reordered, rows_of(map)) == picks(*expected, rows_of(map)));
-    const bool levels_are_same =
-        LevelPainter().draw(*as_decals(reordered)).texels == LevelPainter().draw(*expected).texels;
+    const bool levels_are_same = LevelPainter(LEVEL_TEXELS).draw(*as_decals(reordered)).texels ==
+                                 LevelPainter(LEVEL_TEXELS).draw(*expected).texels;
     CHECK(levels_are_same);
     // And edits keep it.
     const auto edited = reordered->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {5}), MemoryAccount());
@@ -248,12 +248,13 @@ TEST_CASE("levels are coloured from what was kept as they are from scratch", "[s
         layers[1].stroke.styles[0].bands = {{0.3, {250, 0, 0, 255}}, {1.0, {0, 250, 0, 100}}};
     }
     std::shared_ptr<const PreparedDecals> decals = build(layers);
-    LevelPainter painter;
+    const int fineness = GENERATE(LEVEL_TEXELS, LEVEL_TEXELS / 4);
+    LevelPainter painter(fineness);
     auto last = painter.draw(*decals).texels;
     const auto check = [&] {
         const auto texels = painter.draw(*decals).texels;
         // Not to be printed.
-        const bool is_right = texels == LevelPainter().draw(*decals).texels, is_new = texels != last;
+        const bool is_right = texels == LevelPainter(fineness).draw(*decals).texels, is_new = texels != last;
         CHECK(is_right);
         CHECK(is_new);
         last = texels;
@@ -285,11 +286,11 @@ TEST_CASE("what levels keep is counted, or given up where there is no room", "[s
     Chance chance;
     const auto decals = build(random_map(chance).layers());
     MemoryAccount memory;
-    LevelPainter painter(memory);
+    LevelPainter painter(LEVEL_TEXELS, memory);
     const auto texels = painter.draw(*decals).texels;
     const uint64_t kept = memory.bytes("static: levels");
     CHECK(kept > 0);
-    painter = LevelPainter(memory);
+    painter = LevelPainter(LEVEL_TEXELS, memory);
     CHECK(memory.total() == 0);
     memory.set_budget(kept - 1);
     for (int i = 0; i < 2; ++i) {

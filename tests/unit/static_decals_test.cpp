@@ -378,9 +378,10 @@ TEST_CASE("levels of detail keep the coverage of every kind of feature", "[stati
         parts.push_back(random.part(4, 200.0, 0.0));
     const double width = GENERATE(0.7, 60.0);
     const auto decals = build({polygons(rings), lines(parts, {width})});
-    const LevelRaster raster = LevelPainter().draw(*decals);
-    const double texel = decals->grid.bucket_size / LEVEL_TEXELS;
-    REQUIRE(raster.width == decals->grid.columns * LEVEL_TEXELS);
+    const int texels = GENERATE(LEVEL_TEXELS, LEVEL_TEXELS / 4);
+    const LevelRaster raster = LevelPainter(texels).draw(*decals);
+    const double texel = decals->grid.bucket_size / texels;
+    REQUIRE(raster.width == decals->grid.columns * texels);
     // Means over blocks of 8 x 8 texels against as many points as an area needs.
     double bias = 0.0;
     int blocks = 0;

@@ -164,18 +164,20 @@ void Pipeline::set_view() {
         drawer.is_updated = false;
     tiles_ = select_tiles(scene_->tiles, scene_->terrain, request.camera, request.width, request.height,
                           request.terrain_error);
+    const double nearest = nearest_depth(tiles_, scene_->terrain, request.camera);
     view_ = {request.width,
              request.height,
              scene_->positions,
              request.antialias == Antialias::coverage ? Antialias::coverage : Antialias::none,
              widest_pixel(tiles_, scene_->terrain, request.camera, request.height),
+             pixel_at(request.camera, request.height, nearest),
              request.terrain_error,
              options_.coverage,
              &view_block_,
              &timings_,
              false};
     view_block_ = make_view_block(request.camera, request.width, request.height, scene_->terrain,
-                                  scene_->positions, nearest_depth(tiles_, scene_->terrain, request.camera));
+                                  scene_->positions, nearest);
     write_view_block();
     if (request.antialias == Antialias::coverage && !tiles_.empty())  // for the rays of silhouettes
         terrain_->set_levels(tiles_);

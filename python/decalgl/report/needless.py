@@ -75,7 +75,6 @@ OTHER_FLAGS = (
         "CELLS",
         "POINTS",
         "LEVELS",
-        "FROM_LEVELS",
         "MULTISAMPLED",
         "GATHERED",
         "SAMPLE",

@@ -148,6 +148,7 @@ struct View {
     PositionGrid positions;
     Antialias antialias = Antialias::none;  // none or coverage: the others are made of pictures without
     double widest_pixel = 0.0;              // metres that the farthest pixel is wide, seen head-on
+    double narrowest_pixel = 0.0;           // and the nearest
     double terrain_error = 0.0;             // pixels that the terrain's level of detail may be off
     CoverageRule coverage = CoverageRule::exact;
     const ViewBlock* block = nullptr;  // what the uniform block holds

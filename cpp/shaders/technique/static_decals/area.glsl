@@ -9,10 +9,9 @@
 // (0, 6, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
 #include "shared/composed_samples.glsl"
 #include "technique/static_decals/stroke_area.glsl"
-#include "technique/static_decals/levels.glsl"
 
 // Pixels larger than this many cells are sampled point by point.
-const float most_cells_across = 1.5;
+const float most_cells_across = 2.5;
 const int most_borders = 16;  // those between fills are met from both sides, and strokes count twice
 const float most_spread = 0.03;
 // Mesa's software rasteriser ends a shader's loops after 65,535 turns, and quarters take four times as many.
@@ -231,14 +230,14 @@ vec2 middle_of_quarter(int index) {
     return 0.5 * vec2(index & 1, index >> 1) - 0.25;
 }
 
-#if defined(POINTS) || defined(FROM_LEVELS)
+#ifdef POINTS
 // Each sample by itself, where it lies in a cell that few others lie in: first those of the pixel, and where they are rough
 // those of its quarters in their place. They are rough where sixteen of them, which are as even a pattern as all, tell
-// something else than the others. `first`: the sample to begin with.
-vec4 composite_points(LatticePosition centre, mat2 foot, int first) {
+// something else than the others.
+vec4 composite_points(LatticePosition centre, mat2 foot) {
     const int all = 5 * sample_count;
     vec4 sum = vec4(0.0), squares = vec4(0.0), sixteen = vec4(0.0);
-    int i = first, end = first < sample_count ? sample_count : all;
+    int i = 0, end = sample_count;
     do {
         vec2 offset = sample_offsets[i & (sample_count - 1)];
         if (i >= sample_count) offset = 0.5 * offset + middle_of_quarter(i / sample_count - 1);
@@ -291,29 +290,5 @@ vec4 composite_area(LatticePosition centre, mat2 foot) {
         ++part;
     } while (is_rough && part <= 4);
     return is_rough ? sum : color;
-}
-#endif
-
-#ifdef FROM_LEVELS
-// Where thin lines make a level rough, the next finer one tells more, and points where there is none.
-vec4 composite_levels(LatticePosition centre, mat2 foot) {
-    float level = level_of(foot);
-    bool is_rough;
-#ifdef LINES
-    vec4 color;
-    int looks = 0;
-    do {
-        float per_tap = looks == 0 ? texels_per_tap : texels_per_fine_tap;
-        color = mean_of_level(centre, foot, max(level - float(looks), 0.0), per_tap, is_rough);
-        ++looks;
-    } while (is_rough && looks == 1);
-    bool by_points = is_rough && level == 0.0;
-    // Elsewhere, one point outside the grid.
-    LatticePosition place = LatticePosition(by_points ? centre.quantum : ivec2(-1), centre.fraction);
-    vec4 mean = composite_points(place, by_points ? foot : mat2(0.0), by_points ? sample_count : 5 * sample_count - 1);
-    return by_points ? 0.5 * (mean + color) : color;
-#else
-    return mean_of_level(centre, foot, level, texels_per_tap, is_rough);
-#endif
 }
 #endif

@@ -3,9 +3,8 @@
 #ifndef DECALGL_AREA_CLASSES_H
 #define DECALGL_AREA_CLASSES_H
 
-#define CLASS_DONE 1.0     // everything seen covers all of the pixel, and is drawn already
-#define CLASS_CELLS 0.75   // 64 samples together, cell by cell
-#define CLASS_POINTS 0.5   // 64 samples, each by itself: the pixel spans many cells
-#define CLASS_LEVELS 0.25  // from levels of detail
+#define CLASS_DONE 1.0    // everything seen covers all of the pixel, and is drawn already
+#define CLASS_CELLS 0.75  // 64 samples together, cell by cell
+#define CLASS_POINTS 0.5  // 64 samples, each by itself: the pixel spans many cells
 
 #endif

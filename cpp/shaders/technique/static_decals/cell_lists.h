@@ -30,8 +30,8 @@
 
 // Levels of detail (levels.h): texels of the finest along a bucket's side, and how many a pixel must span to be
 // drawn from them.
-#define LEVEL_TEXELS 16
-#define FEWEST_TEXELS 3
+#define LEVEL_TEXELS 32
+#define FEWEST_TEXELS 6
 
 #define COUNT_BITS 6
 #define COUNT_ESCAPE 63u  // that many or more: to the texel whose last word is LIST_END

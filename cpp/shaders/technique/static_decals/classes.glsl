@@ -4,6 +4,9 @@
 // is left to the pass that takes each by itself.
 #include "technique/static_decals/area_classes.h"
 #include "technique/static_decals/area.glsl"
+#ifdef LEVELS
+#include "technique/static_decals/levels.glsl"
+#endif
 
 struct Classed {
     float kind;
@@ -74,11 +77,15 @@ Classed classed(LatticePosition centre, mat2 foot) {
     float kind = CLASS_DONE;
     if (!is_within_cell(local, foot, size)) kind = CLASS_CELLS;
     if (max(length(foot[0]), length(foot[1])) > cells_across * size) kind = CLASS_POINTS;
+    bool from_levels = false;
 #ifdef LEVELS
-    if (spans_texels(foot)) kind = CLASS_LEVELS;
+    vec4 mean = mean_of_levels(centre, foot, from_levels);
 #endif
-    if (kind != CLASS_DONE) cell.entry = EMPTY_LIST;
+    if (kind != CLASS_DONE || from_levels) cell.entry = EMPTY_LIST;
     Classed result = classed_cell(cell, local, foot);
     if (kind != CLASS_DONE) result.kind = kind;
+#ifdef LEVELS
+    if (from_levels) result = Classed(CLASS_DONE, mean);
+#endif
     return result;
 }

@@ -1,26 +1,15 @@
 // Levels of detail: the mean over a pixel that spans some texels of the finest level (levels.h).
 //
-// The pixel's parallelogram is covered by taps, each a bilinear mean around it, on the level at which the pixel is
-// FEWEST_TEXELS to twice as many texels wide.
+// The pixel's parallelogram is covered by taps a texel apart, each a bilinear mean around it, on the level at which the
+// pixel is FEWEST_TEXELS to twice as many texels wide.
+uniform float texels_per_bucket;
 uniform sampler2D levels;
 #ifdef LENS
 uniform sampler2D lens_levels;
 #endif
 
-const float most_taps = 12.0;  // along a pixel's longer side
-const float texels_per_tap = 1.5;
-const float texels_per_fine_tap = 1.0;
-const float most_tap_spread = 0.02;
-
-// A pixel's sides in texels of the finest level.
-vec2 sides_in_texels(mat2 foot) {
-    return vec2(length(foot[0]), length(foot[1])) * (float(LEVEL_TEXELS) / float(BUCKET_QUANTA));
-}
-
-bool spans_texels(mat2 foot) {
-    vec2 sides = sides_in_texels(foot);
-    return min(sides.x, sides.y) >= float(FEWEST_TEXELS);
-}
+const float most_texels_along = 24.0;  // of a pixel's longer side
+const float most_spread_per_texel = 0.02;
 
 vec4 level_at(vec2 place, float level) {
 #ifdef LENS
@@ -29,11 +18,18 @@ vec4 level_at(vec2 place, float level) {
     return textureLod(levels, place, level);
 }
 
-// A level's mean over a pixel. It is rough where the taps tell what lies at its border too coarsely.
-vec4 mean_of_level(LatticePosition centre, mat2 foot, float level, float per_tap, out bool is_rough) {
-    vec2 sides = sides_in_texels(foot);
-    ivec2 taps = ivec2(clamp(ceil(sides * exp2(-level) / per_tap), vec2(1.0), vec2(4.0 * most_taps)));
-    vec2 per_quantum = float(LEVEL_TEXELS) / float(BUCKET_QUANTA) / vec2(textureSize(levels, 0));
+// `is_seen`: whether the pixel spans enough texels, and they tell enough of it. The finest level has few samples a texel:
+// strokes that lie alone are shared out among them (thin_stroke.h), but which are seen of those that lie over each other is
+// chance, all the more the more there are, and less over more texels.
+vec4 mean_of_levels(LatticePosition centre, mat2 foot, out bool is_seen) {
+    float texels_per_quantum = texels_per_bucket / float(BUCKET_QUANTA);
+    vec2 sides = vec2(length(foot[0]), length(foot[1])) * texels_per_quantum;
+    float across = min(sides.x, sides.y), along = max(sides.x, sides.y);
+    is_seen = across >= float(FEWEST_TEXELS);
+    if (!is_seen) foot = mat2(0.0);
+    float level = max(floor(log2(max(across / float(FEWEST_TEXELS), along / most_texels_along))), 0.0);
+    ivec2 taps = is_seen ? max(ivec2(ceil(sides * exp2(-level))), ivec2(1)) : ivec2(1);
+    vec2 per_quantum = texels_per_quantum / vec2(textureSize(levels, 0));
     vec2 at = (vec2(centre.quantum) + centre.fraction) * per_quantum;
     vec4 sum = vec4(0.0), squares = vec4(0.0);
     int tap = 0;
@@ -43,14 +39,11 @@ vec4 mean_of_level(LatticePosition centre, mat2 foot, float level, float per_tap
         sum += color;
         squares += color * color;
     } while (++tap < taps.x * taps.y);
-    sum /= float(taps.x * taps.y);
-    vec4 spread = squares / float(taps.x * taps.y) - sum * sum;
-    is_rough = any(greaterThan(spread, vec4(most_tap_spread * most_tap_spread)));
-    return sum;
-}
-
-float level_of(mat2 foot) {
-    vec2 sides = sides_in_texels(foot);
-    float wanted = max(min(sides.x, sides.y) / float(FEWEST_TEXELS), max(sides.x, sides.y) / most_taps);
-    return max(floor(log2(wanted)), 0.0);
+    vec4 mean = sum / float(taps.x * taps.y);
+#ifdef LINES
+    vec4 spread = squares / float(taps.x * taps.y) - mean * mean;
+    float most_spread = most_spread_per_texel * across;
+    if (level == 0.0 && any(greaterThan(mean.a * spread, vec4(most_spread * most_spread)))) is_seen = false;
+#endif
+    return mean;
 }

@@ -5,8 +5,8 @@
 // ONE_COLOR      all features are opaque and of one colour
 // TRANSLUCENT    some feature is not opaque
 // CLASSES        of a picture filtered over the pixels' areas, the first pass: classes of pixels, and those without borders
-// CELLS, POINTS, FROM_LEVELS   the passes of the other classes (area_classes.h); else the pixels' centres are seen
-// LEVELS         levels of detail are there
+// CELLS, POINTS  the passes of the other classes (area_classes.h); else the pixels' centres are seen
+// LEVELS         of CLASSES: levels of detail are there
 // THOENY         of CELLS, in place of samples: strokes by their estimated coverage
 // STYLES         some decal is more than a plain stroke or an even fill: of what it can be, JOINED, PATTERNS, BANDS,
 //                HATCHES, SLOPES
@@ -22,7 +22,7 @@
 #define STYLES
 #endif
 #include "shared/ray.glsl"
-#if defined(CLASSES) || defined(CELLS) || defined(THOENY) || defined(POINTS) || defined(FROM_LEVELS)
+#if defined(CLASSES) || defined(CELLS) || defined(THOENY) || defined(POINTS)
 #define AREA
 #endif
 #include "technique/static_decals/point.glsl"
@@ -57,9 +57,7 @@ vec4 seen_color(LatticePosition position, mat2 foot, inout float kind) {
 #elif defined(THOENY)
     return composite_thoeny(position, foot);
 #elif defined(POINTS)
-    return composite_points(position, foot, 0);
-#elif defined(FROM_LEVELS)
-    return composite_levels(position, foot);
+    return composite_points(position, foot);
 #elif defined(CELLS)
     return composite_area(position, foot);
 #else

@@ -1,14 +1,10 @@
 #include "technique/static_decals/level_samples.h"
 
 #include <algorithm>
+#include <array>
 
 namespace decalgl {
 namespace {
-
-// Samples along the sides of a bucket and of a texel; at the finest level a cell has one.
-constexpr int bucket_side = 1 << FINEST_LEVEL;
-constexpr int texel_side = bucket_side / LEVEL_TEXELS;
-static_assert(texel_side * texel_side == texel_samples, "as many a texel");
 
 constexpr uint32_t root = 0;
 
@@ -19,9 +15,11 @@ float scattered(uint32_t seed) {
     return static_cast<float>((seed ^ seed >> 15) >> 8) * 0x1p-24F;
 }
 
-// A bucket without points looks the same everywhere, but for hatches.
-int samples_across(const PreparedDecals& decals, int level) {
-    return level == 0 && (decals.style_flags & STYLE_HATCH) == 0 ? 1 : bucket_side >> level;
+// Of each block of cells that have one sample together, the one that it lies in.
+bool has_sample(int column, int row, int block) {
+    const auto place = static_cast<uint32_t>((row / block) * 64 + column / block);
+    const auto chosen = static_cast<int>(scattered(place) * static_cast<float>(block * block));
+    return column % block == chosen % block && row % block == chosen / block;
 }
 
 // The samples of one cell: `side` x `side`, each somewhere in its own square.
@@ -45,6 +43,11 @@ size_t words_below(uint32_t stack) {
 
 }  // namespace
 
+// A bucket without points looks the same everywhere, but for hatches.
+int BucketSampler::samples_across(int level) const {
+    return level == 0 && (decals_.style_flags & STYLE_HATCH) == 0 ? 1 : std::max(bucket_side_ >> level, 1);
+}
+
 const BucketSamples& BucketSampler::sample(uint32_t bucket) {
     for (std::vector<uint32_t>& texel : texels_)
         texel.clear();
@@ -52,7 +55,7 @@ const BucketSamples& BucketSampler::sample(uint32_t bucket) {
     samples_.stacks.clear();
     const uint32_t entry = decals_.bucket_entries[bucket];
     const int level = static_cast<int>(entry & ((1U << LEVEL_BITS) - 1));
-    const int side = samples_across(decals_, level);
+    const int side = samples_across(level), block = std::max((1 << level) / bucket_side_, 1);
     CellPoints<float> cell = samples_of(level, side);
     cell.bucket_column = bucket % static_cast<uint32_t>(decals_.grid.columns);
     cell.bucket_row = bucket / static_cast<uint32_t>(decals_.grid.columns);
@@ -60,15 +63,15 @@ const BucketSamples& BucketSampler::sample(uint32_t bucket) {
     branch_of_.resize(cell.x.size());
     for (int i = 0; i < 1 << (2 * level); ++i) {
         const uint32_t list = decals_.cells[(entry >> LEVEL_BITS) + static_cast<uint32_t>(i)];
-        if (list == EMPTY_LIST)
-            continue;
         const int column = i & ((1 << level) - 1), row = i >> level;
+        if (list == EMPTY_LIST || !has_sample(column, row, block))
+            continue;
         cell.corner = {double(column) * cell_quanta(level), double(row) * cell_quanta(level)};
         read_cell(reader, list);
         if (side == 1 && level == 0)
             add_stack(branch_of_[0], texel_samples, samples_.words);
         else
-            add_cell(column, row, side);
+            add_cell(column / block, row / block, side);
     }
     if (side > 1 || level > 0)
         gather_texels();
@@ -128,7 +131,8 @@ void BucketSampler::add_cell(int column, int row, int side) {
             }
             const int x = (column * side + left) / texel_side, y = (row * side + top) / texel_side;
             for (size_t i = 0; i < count; ++i)
-                add_stack(branches[i], samples[i], texels_[static_cast<size_t>(y * LEVEL_TEXELS + x)]);
+                add_stack(branches[i], samples[i],
+                          texels_[static_cast<size_t>(y * bucket_side_ / texel_side + x)]);
         }
     }
 }

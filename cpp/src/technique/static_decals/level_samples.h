@@ -5,7 +5,6 @@
 //     stack    samples << stack_shift | words      slot, slot, ... topmost first; where a scene has bands slot, band
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,8 +12,8 @@
 
 namespace decalgl {
 
-constexpr size_t bucket_texels = LEVEL_TEXELS * LEVEL_TEXELS;
-constexpr uint32_t texel_samples = 16;
+constexpr int texel_side = 2;
+constexpr uint32_t texel_samples = texel_side * texel_side;
 constexpr int stack_shift = 27;
 constexpr uint32_t stack_mask = (1U << stack_shift) - 1;
 
@@ -27,7 +26,9 @@ struct BucketSamples {
 // Walks lists bucket by bucket, with room that is used again.
 class BucketSampler {
 public:
-    explicit BucketSampler(const PreparedDecals& decals) : decals_(decals) {}
+    // `texels`: along a bucket's side, a power of two.
+    BucketSampler(const PreparedDecals& decals, int texels)
+        : decals_(decals), bucket_side_(texels * texel_side), texels_(static_cast<size_t>(texels * texels)) {}
 
     // Valid until the next call.
     const BucketSamples& sample(uint32_t bucket);
@@ -41,6 +42,7 @@ private:
         uint32_t newest;  // of the branches below
     };
 
+    int samples_across(int level) const;
     void read_cell(ListReader<float>& reader, uint32_t list);
     void lower(uint32_t& branch, uint32_t slot, uint32_t band, size_t first_of_slot);
     void add_cell(int column, int row, int side);
@@ -48,10 +50,11 @@ private:
     void gather_texels();
 
     const PreparedDecals& decals_;
+    int bucket_side_;  // in samples
     std::vector<Branch> branches_;
     std::vector<uint32_t> branch_of_;  // of each sample of a cell
     std::vector<uint32_t> stack_;
-    std::array<std::vector<uint32_t>, bucket_texels> texels_;
+    std::vector<std::vector<uint32_t>> texels_;
     BucketSamples samples_;
 };
 

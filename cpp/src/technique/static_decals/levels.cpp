@@ -12,7 +12,7 @@ namespace decalgl {
 namespace {
 
 // Of deeper buckets nothing is kept: walking them again is cheaper than the room.
-constexpr size_t most_words = 8 * bucket_texels;
+constexpr size_t most_words_per_texel = 8;
 
 struct Color {
     float r = 0.0F, g = 0.0F, b = 0.0F, a = 0.0F;
@@ -25,7 +25,13 @@ struct Color {
     }
 };
 
-using BucketTexels = std::array<Color, bucket_texels>;
+// Row by row from the lowest.
+struct BucketTexels {
+    explicit BucketTexels(int count) : side(static_cast<size_t>(count)), texels(side * side) {}
+
+    size_t side;
+    std::vector<Color> texels;
+};
 
 // Stacks in the colours and the draw order of one look.
 class StackColors {
@@ -81,25 +87,26 @@ private:
     std::vector<Level> ordered_;
 };
 
-void paint(const BucketSamples& samples, StackColors& colors, BucketTexels& texels) {
+void paint(const BucketSamples& samples, StackColors& colors, BucketTexels& bucket) {
+    std::vector<Color>& texels = bucket.texels;
     const uint32_t* word = samples.words.data();
     if (samples.words.empty()) {
-        texels.fill(Color());
+        std::fill(texels.begin(), texels.end(), Color());
     } else if (samples.stacks.empty()) {
-        texels.fill(colors.mean(word, 1));
+        std::fill(texels.begin(), texels.end(), colors.mean(word, 1));
     } else {
-        for (size_t i = 0; i < bucket_texels; ++i)
+        for (size_t i = 0; i < texels.size(); ++i)
             texels[i] = colors.mean(word, samples.stacks[i]);
     }
 }
 
 // One row of texels as bytes.
-void write_row(const BucketTexels& texels, size_t y, uint8_t* target) {
+void write_row(const BucketTexels& bucket, size_t y, uint8_t* target) {
     const auto byte = [](float value) {
         return static_cast<uint8_t>(std::lrint(std::clamp(value, 0.0F, 255.0F)));
     };
-    for (size_t x = 0; x < LEVEL_TEXELS; ++x, target += 4) {
-        const Color& texel = texels[y * LEVEL_TEXELS + x];
+    for (size_t x = 0; x < bucket.side; ++x, target += 4) {
+        const Color& texel = bucket.texels[y * bucket.side + x];
         target[0] = byte(texel.r);
         target[1] = byte(texel.g);
         target[2] = byte(texel.b);
@@ -109,11 +116,11 @@ void write_row(const BucketTexels& texels, size_t y, uint8_t* target) {
 
 void place_bucket(const BucketTexels& texels, const BucketGrid& grid, uint32_t bucket, LevelRaster& raster) {
     const auto columns = static_cast<uint32_t>(grid.columns);
-    for (size_t y = 0; y < LEVEL_TEXELS; ++y) {
-        const size_t row = size_t{bucket / columns} * LEVEL_TEXELS + y;
+    for (size_t y = 0; y < texels.side; ++y) {
+        const size_t row = size_t{bucket / columns} * texels.side + y;
         write_row(texels, y,
                   &raster.texels[4 * (row * static_cast<size_t>(raster.width) +
-                                      size_t{bucket % columns} * LEVEL_TEXELS)]);
+                                      size_t{bucket % columns} * texels.side)]);
     }
 }
 
@@ -136,7 +143,7 @@ const BucketSamples& LevelPainter::samples_of(const PreparedDecals& look, uint32
         return kept.samples;
     const BucketSamples& samples = sampler.sample(bucket);
     kept.entry = entry;
-    kept.is_kept = samples.words.size() <= most_words;
+    kept.is_kept = samples.words.size() <= most_words_per_texel * static_cast<size_t>(texels_ * texels_);
     kept.samples = kept.is_kept ? samples : BucketSamples();
     return samples;
 }
@@ -144,13 +151,13 @@ const BucketSamples& LevelPainter::samples_of(const PreparedDecals& look, uint32
 LevelRaster LevelPainter::draw(const PreparedDecals& look) {
     take_shapes_of(look);
     LevelRaster raster;
-    raster.width = look.grid.columns * LEVEL_TEXELS;
-    raster.height = look.grid.rows * LEVEL_TEXELS;
+    raster.width = look.grid.columns * texels_;
+    raster.height = look.grid.rows * texels_;
     raster.texels.resize(size_t{4} * static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height));
     parallel_for(look.grid.bucket_count(), 64, 0, [&](size_t begin, size_t end) {
-        BucketSampler sampler(look);
+        BucketSampler sampler(look, texels_);
         StackColors colors(look);
-        BucketTexels texels;
+        BucketTexels texels(texels_);
         for (size_t i = begin; i < end; ++i) {
             const auto bucket = static_cast<uint32_t>(i);
             paint(samples_of(look, bucket, sampler), colors, texels);
@@ -163,13 +170,13 @@ LevelRaster LevelPainter::draw(const PreparedDecals& look) {
 
 std::vector<uint8_t> LevelPainter::draw_bucket(const PreparedDecals& look, uint32_t bucket) {
     take_shapes_of(look);
-    BucketSampler sampler(look);
+    BucketSampler sampler(look, texels_);
     StackColors colors(look);
-    BucketTexels texels;
+    BucketTexels texels(texels_);
     paint(samples_of(look, bucket, sampler), colors, texels);
-    std::vector<uint8_t> bytes(4 * bucket_texels);
-    for (size_t y = 0; y < LEVEL_TEXELS; ++y)
-        write_row(texels, y, &bytes[4 * y * LEVEL_TEXELS]);
+    std::vector<uint8_t> bytes(4 * texels.texels.size());
+    for (size_t y = 0; y < texels.side; ++y)
+        write_row(texels, y, &bytes[4 * y * texels.side]);
     return bytes;
 }
 

@@ -1,9 +1,9 @@
 // Levels of detail of a static index: what the map looks like from so far that a pixel spans many cells.
 //
-// The finest level is a raster of LEVEL_TEXELS x LEVEL_TEXELS texels a bucket. Each holds the mean over its area of the
-// features' composite, as the shader would draw it: premultiplied colour and coverage, from 16 samples. Coarser
-// levels are means of four, so a line of any width keeps its coverage, and neighbours that share a border leave
-// no gap. Only filtered pictures of pixels that span some texels are drawn from levels.
+// The finest level is a raster of LEVEL_TEXELS x LEVEL_TEXELS texels a bucket, or of fewer where no pixel needs as many. Each
+// holds the mean over its area of the features' composite, as the shader would draw it: premultiplied colour and
+// coverage, from four samples. Coarser levels are means of four, so a line of any width keeps its coverage, and neighbours
+// that share a border leave no gap. Only filtered pictures of pixels that span some texels are drawn from levels.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +26,13 @@ struct LevelRaster {
 // what was edited take a walk through the lists.
 class LevelPainter {
 public:
-    explicit LevelPainter(const MemoryAccount& memory = MemoryAccount()) : memory_(memory) {}
+    // `texels`: along a bucket's side.
+    explicit LevelPainter(int texels, const MemoryAccount& memory = MemoryAccount())
+        : texels_(texels), memory_(memory) {}
 
     // On all cores; the same bytes on any number of them, and whatever was kept.
     LevelRaster draw(const PreparedDecals& look);
-    // The part of it that lies in one bucket, LEVEL_TEXELS a side.
+    // The part of it that lies in one bucket.
     std::vector<uint8_t> draw_bucket(const PreparedDecals& look, uint32_t bucket);
 
 private:
@@ -44,6 +46,7 @@ private:
     const BucketSamples& samples_of(const PreparedDecals& look, uint32_t bucket, BucketSampler& sampler);
     void charge_kept();
 
+    int texels_;
     MemoryAccount memory_;
     MemoryCharge charge_;
     std::shared_ptr<const ShapeToken> shapes_;

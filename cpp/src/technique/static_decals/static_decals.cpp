@@ -82,54 +82,14 @@ void StaticDecals::upload(std::shared_ptr<const Prepared> prepared, std::shared_
         lens_texels_ = {};
     upload_records(*next, next_lens.get());
     upload_styles(next.get(), next_lens.get());
-    refresh_levels(*next, next_lens.get());
+    if (!prepared_ || prepared_->shape_token != next->shape_token)
+        levels_ = std::make_unique<LevelTextures>(memory_);
+    else
+        levels_->refresh(*prepared_, *next, lens_.get(), next_lens.get());
     if (!no_vertices_)
         no_vertices_ = gl::VertexArray::create();
     prepared_ = std::move(next);
     lens_ = std::move(next_lens);
-}
-
-// Levels of another look are drawn anew when they are needed; after an edit, only the buckets that it touched.
-void StaticDecals::refresh_levels(const PreparedDecals& next, const PreparedDecals* next_lens) {
-    if (lens_.get() != next_lens)
-        lens_levels_.is_drawn = false;
-    if (next_lens == nullptr) {
-        lens_levels_ = {};
-        lens_painter_ = LevelPainter(memory_);
-    }
-    if (!prepared_ || prepared_->shape_token != next.shape_token) {
-        levels_ = {};
-        level_painter_ = LevelPainter(memory_);
-    } else if (prepared_->look_token != next.look_token) {
-        levels_.is_drawn = false;
-    }
-    if (!levels_.is_drawn || prepared_.get() == &next)
-        return;
-    const auto columns = static_cast<uint32_t>(next.grid.columns);
-    for (uint32_t bucket = 0; bucket < next.bucket_entries.size(); ++bucket) {
-        if (prepared_->bucket_entries[bucket] == next.bucket_entries[bucket])
-            continue;
-        levels_.texture.update(0, static_cast<int>(bucket % columns) * LEVEL_TEXELS,
-                               static_cast<int>(bucket / columns) * LEVEL_TEXELS, LEVEL_TEXELS, LEVEL_TEXELS,
-                               level_painter_.draw_bucket(next, bucket).data());
-    }
-    glGenerateTextureMipmap(levels_.texture.id());
-}
-
-void StaticDecals::draw_levels(const PreparedDecals& look, LevelPainter& painter, Levels& levels) {
-    if (levels.is_drawn)
-        return;
-    const LevelRaster finest = painter.draw(look);
-    const int count = 1 + static_cast<int>(std::log2(std::max(finest.width, finest.height)));
-    if (levels.texture.width() != finest.width || levels.texture.height() != finest.height) {
-        levels.texture = gl::Texture2D();
-        levels.texture =
-            gl::Texture2D::create(memory_, "static: levels", GL_RGBA8, finest.width, finest.height, count);
-        levels.texture.set_filter(GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR);
-    }
-    levels.texture.update(0, 0, 0, finest.width, finest.height, finest.texels.data());
-    glGenerateTextureMipmap(levels.texture.id());
-    levels.is_drawn = true;
 }
 
 // With a lens, its kinds and records follow the others.
@@ -182,14 +142,6 @@ void StaticDecals::upload_styles(const PreparedDecals* prepared, const PreparedD
         styles_.buffer().update(bytes, bytes, lens->styles.data());
 }
 
-// Whether some pixel spans enough texels of the finest level (levels.glsl).
-bool StaticDecals::needs_levels(const View& view) const {
-    const double texel = prepared_->grid.bucket_size / LEVEL_TEXELS;
-    if ((prepared_->style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0)
-        return false;  // levels know no slopes
-    return view.antialias == Antialias::coverage && view.widest_pixel >= FEWEST_TEXELS * texel;
-}
-
 // Plain styles too as records, for the program that knows nothing else.
 void StaticDecals::make_records() {
     std::vector<uint32_t> kinds;
@@ -205,17 +157,12 @@ UpdateReport StaticDecals::update(const View& view) {
         half_planes_ = gl::TextureBuffer::from(memory_, "static: half planes", GL_RG32UI, make_half_planes());
     if (view.antialias == Antialias::coverage && view.coverage == CoverageRule::thoeny && !kinds_)
         make_records();
-    draws_levels_ = needs_levels(view);
-    if (draws_levels_)
-        draw_levels(*prepared_, level_painter_, levels_);
-    if (draws_levels_ && lens_)
-        draw_levels(*lens_, lens_->shape_token == prepared_->shape_token ? level_painter_ : lens_painter_,
-                    lens_levels_);
+    levels_->update(view, *prepared_, lens_.get());
     UpdateReport report;
     report.pieces = prepared_->pieces;
     report.bytes = buckets_.buffer().bytes() + cells_.bytes() + texels_.bytes() + lens_texels_.bytes() +
                    styles_.buffer().bytes() + kinds_.buffer().bytes() + style_records_.buffer().bytes() +
-                   half_planes_.buffer().bytes() + levels_.texture.bytes() + lens_levels_.texture.bytes();
+                   half_planes_.buffer().bytes() + levels_->bytes();
     report.longest_walk = prepared_->longest_list;
     return report;
 }
@@ -251,7 +198,7 @@ void StaticDecals::draw_areas(const gl::Flags& flags, CoverageRule rule, const G
         all.insert(flag);
         if (rule == CoverageRule::thoeny && prepared_->has_lines && (flag == classes || flag == cells))
             all.insert("THOENY");
-        if (draws_levels_)
+        if (levels_->are_needed() && flag == classes)
             all.insert("LEVELS");
         draw_full_screen(std::move(all), gbuffer, programs);
     };
@@ -266,8 +213,6 @@ void StaticDecals::draw_areas(const gl::Flags& flags, CoverageRule rule, const G
     };
     draw_rest(cells, CLASS_CELLS);
     draw_rest("POINTS", CLASS_POINTS);
-    if (draws_levels_)
-        draw_rest("FROM_LEVELS", CLASS_LEVELS);
     glDepthRange(0.0, 1.0);
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_GREATER);
@@ -314,9 +259,7 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
     program.use();
     program.set("position_texture", 0);
     gbuffer.position->bind(0);
-    const bool sees_area =
-        flags.count("CLASSES") + flags.count("CELLS") + flags.count("POINTS") + flags.count("FROM_LEVELS") >
-        0;
+    const bool sees_area = flags.count("CLASSES") + flags.count("CELLS") + flags.count("POINTS") > 0;
     if (sees_area || flags.count("SLOPES") != 0) {
         program.set("surface_texture", 1);
         gbuffer.surface->bind(1);
@@ -349,14 +292,8 @@ void StaticDecals::draw_full_screen(gl::Flags flags, const GBufferView& gbuffer,
         lens_texels_.bind(12);
     }
     set_grid(prepared_->grid, program);
-    if (flags.count("LEVELS") != 0) {
-        program.set("levels", 6);
-        levels_.texture.bind(6);
-        if (lens_) {
-            program.set("lens_levels", 9);
-            lens_levels_.texture.bind(9);
-        }
-    }
+    if (flags.count("LEVELS") != 0)
+        levels_->bind(program, lens_ != nullptr);
     if (flags.count("ONE_COLOR") != 0) {
         const std::array<uint8_t, 4> color = prepared_->one_color;
         program.set("one_color", glm::vec4(color[0], color[1], color[2], color[3]) / 255.0F);

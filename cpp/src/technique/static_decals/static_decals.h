@@ -5,9 +5,8 @@
 #include "gl/buffer.h"
 #include "gl/growing_buffer.h"
 #include "gl/program.h"
-#include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "technique/static_decals/levels.h"
+#include "technique/static_decals/level_textures.h"
 #include "technique/static_decals/prepared_decals.h"
 
 namespace decalgl {
@@ -27,13 +26,6 @@ public:
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 
 private:
-    // Of one look, made by the first view that needs them.
-    struct Levels {
-        gl::Texture2D texture;
-        bool is_drawn = false;
-    };
-
-    bool needs_levels(const View& view) const;
     void upload_styles(const PreparedDecals* prepared, const PreparedDecals* lens);
     void upload_records(const PreparedDecals& prepared, const PreparedDecals* lens);
     bool has_styles() const;
@@ -42,8 +34,6 @@ private:
     bool any_look(HoldsFor holds_for) const {
         return holds_for(*prepared_) || (lens_ && holds_for(*lens_));
     }
-    void refresh_levels(const PreparedDecals& next, const PreparedDecals* next_lens);
-    void draw_levels(const PreparedDecals& look, LevelPainter& painter, Levels& levels);
     void add_style_flags(gl::Flags& flags) const;
     void make_records();
     void draw_areas(const gl::Flags& flags, CoverageRule rule, const GBufferView& gbuffer,
@@ -60,9 +50,7 @@ private:
     gl::TextureBuffer styles_;                 // those inside the lens follow the others
     gl::TextureBuffer kinds_, style_records_;  // where some decal is not plain; those inside the lens too
     gl::TextureBuffer half_planes_;            // which samples lie in one, by direction and distance
-    Levels levels_, lens_levels_;
-    LevelPainter level_painter_, lens_painter_;
-    bool draws_levels_ = false;
+    std::unique_ptr<LevelTextures> levels_;
     gl::VertexArray no_vertices_;
 };
 
