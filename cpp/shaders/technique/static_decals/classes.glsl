@@ -79,13 +79,13 @@ Classed classed(LatticePosition centre, mat2 foot) {
     if (max(length(foot[0]), length(foot[1])) > cells_across * size) kind = CLASS_POINTS;
     bool from_levels = false;
 #ifdef LEVELS
-    vec4 mean = mean_of_levels(centre, foot, from_levels);
+    from_levels = spans_texels(foot);
 #endif
     if (kind != CLASS_DONE || from_levels) cell.entry = EMPTY_LIST;
     Classed result = classed_cell(cell, local, foot);
     if (kind != CLASS_DONE) result.kind = kind;
 #ifdef LEVELS
-    if (from_levels) result = Classed(CLASS_DONE, mean);
+    if (from_levels) result = Classed(CLASS_DONE, mean_of_levels(centre, foot));
 #endif
     return result;
 }

@@ -22,16 +22,27 @@ bool has_sample(int column, int row, int block) {
     return column % block == chosen % block && row % block == chosen / block;
 }
 
-// The samples of one cell: `side` x `side`, each somewhere in its own square.
+// The number's bits behind the point, the lowest first (van der Corput 1935).
+float reversed(int number) {
+    float sum = 0.0F, bit = 0.5F;
+    for (; number > 0; number >>= 1, bit /= 2.0F)
+        sum += (number & 1) != 0 ? bit : 0.0F;
+    return sum;
+}
+
+// The samples of one cell: `side` x `side`, each in its own square, at another place of it in each row and in each column, so
+// that a line across many squares meets as many as its share.
 CellPoints<float> samples_of(int level, int side) {
     CellPoints<float> cell;
     cell.level = level;
     cell.side = static_cast<size_t>(side);
     const float step = static_cast<float>(cell_quanta(level)) / static_cast<float>(side);
-    for (int i = 0; i < side * side; ++i) {
-        const auto seed = static_cast<uint32_t>(i + 97 * level);
-        cell.x.push_back((static_cast<float>(i % side) + scattered(2 * seed)) * step);
-        cell.y.push_back((static_cast<float>(i / side) + scattered(2 * seed + 1)) * step);
+    const float middle = 0.5F / static_cast<float>(side);
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            cell.x.push_back((static_cast<float>(column) + reversed(row) + middle) * step);
+            cell.y.push_back((static_cast<float>(row) + reversed(column) + middle) * step);
+        }
     }
     return cell;
 }

@@ -12,7 +12,7 @@
 
 namespace decalgl {
 
-constexpr int texel_side = 2;
+constexpr int texel_side = 4;
 constexpr uint32_t texel_samples = texel_side * texel_side;
 constexpr int stack_shift = 27;
 constexpr uint32_t stack_mask = (1U << stack_shift) - 1;

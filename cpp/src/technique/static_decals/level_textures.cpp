@@ -42,8 +42,7 @@ void LevelTextures::redraw_edited(Fineness& fineness, const PreparedDecals& befo
     glGenerateTextureMipmap(raster.texture.id());
 }
 
-// The finest one, or one at which the nearest pixel is so many texels wide that it is drawn from the next coarser level, and
-// has as many samples as lines that cross everywhere need.
+// The coarsest one that the nearest pixel spans enough texels of.
 LevelTextures::Fineness* LevelTextures::fineness_for(const View& view, const PreparedDecals& look) {
     if (view.antialias != Antialias::coverage || (look.style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0)
         return nullptr;  // levels know no slopes
@@ -51,7 +50,7 @@ LevelTextures::Fineness* LevelTextures::fineness_for(const View& view, const Pre
     if (view.widest_pixel < FEWEST_TEXELS * bucket / LEVEL_TEXELS)
         return nullptr;
     const auto is_enough = [&](const Fineness& each) {
-        return view.narrowest_pixel >= 2.5 * FEWEST_TEXELS * bucket / each.texels;
+        return view.narrowest_pixel >= FEWEST_TEXELS * bucket / each.texels;
     };
     Fineness* coarsest = &finenesses_.front();
     for (Fineness& each : finenesses_)

@@ -2,7 +2,7 @@
 //
 // The finest level is a raster of LEVEL_TEXELS x LEVEL_TEXELS texels a bucket, or of fewer where no pixel needs as many. Each
 // holds the mean over its area of the features' composite, as the shader would draw it: premultiplied colour and
-// coverage, from four samples. Coarser levels are means of four, so a line of any width keeps its coverage, and neighbours
+// coverage, from 16 samples. Coarser levels are means of four, so a line of any width keeps its coverage, and neighbours
 // that share a border leave no gap. Only filtered pictures of pixels that span some texels are drawn from levels.
 #pragma once
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "technique/static_decals/style_reader.h"
-#include "technique/static_decals/thin_stroke.h"
 #include "vector/slope.h"
 
 namespace decalgl {
@@ -80,7 +79,6 @@ private:
         met_ = is_plain_stroke ? PointRange{shares_.size(), 0} : PointRange{0, shares_.size()};
         const Real unit = is_line_ ? std::ldexp(Real(1), -style_.scale()) : Real(1);
         const bool is_tangent = is_line_ && style_.is(STYLE_TANGENT);
-        is_thin_ = is_plain_stroke && begin_thin(unit, is_tangent);
         if (unit == unit_ && is_tangent == is_tangent_)
             return;
         unit_ = unit;
@@ -109,10 +107,7 @@ private:
             if (!moves)
                 add_crossing(to);
         } else if (!style_.is(STYLE_JOINED)) {
-            if (is_thin_)
-                add_thin(moves ? to : from_, to);
-            else
-                add_capsule(measured(moves ? to : from_), measured(to));
+            add_capsule(measured(moves ? to : from_), measured(to));
         } else if (moves) {
             has_incoming_ = has_incoming_ && to.x == from_.x && to.y == from_.y;
             awaits_phase_ = style_.is(STYLE_PATTERN);
@@ -159,24 +154,6 @@ private:
             const Real share = has_bands ? std::sqrt(apart2) / radius : Real(0);
             shares_[i] = apart2 <= radius2 ? std::min(shares_[i], share) : shares_[i];
         }
-    }
-
-    // Whether the stroke is one: of points in squares alone, and where nothing asks how far from its middle it covers them.
-    bool begin_thin(Real unit, bool is_tangent) {
-        const Real square =
-            static_cast<Real>(cell_quanta(cell_.level)) * unit / static_cast<Real>(cell_.side);
-        if (cell_.side == 1 || is_tangent || style_.is(STYLE_BANDS) || style_.half_width() >= square)
-            return false;
-        thin_.begin(cell_.side, square, bias_);
-        return true;
-    }
-
-    void add_thin(Vector2 from, Vector2 to) {
-        const auto radius = static_cast<Real>(style_.half_width());
-        const PointRange near = points_between(static_cast<Real>(std::min(from.y, to.y)) - radius,
-                                               static_cast<Real>(std::max(from.y, to.y)) + radius);
-        met_ = {std::min(met_.first, near.first), std::max(met_.last, near.last)};
-        thin_.add_edge(from, to, radius, near.first, near.last);
     }
 
     void add_joined_edge(Vector2 to) {
@@ -228,8 +205,6 @@ private:
             for (size_t i = 0; i < shares_.size(); ++i)
                 open_[i] = shares_[i] <= 1;
         } else {
-            if (is_thin_)
-                thin_.spread(met_.first, met_.last, shares_);
             const bool hatched = !is_line_ && style_.is(STYLE_HATCH);
             for (size_t i = met_.first; i < met_.last; ++i)
                 if ((follows_clip_ && !open_[i]) || (hatched && !is_hatched(i)))
@@ -254,8 +229,7 @@ private:
     Slope slope_;
     Real bias_;
     Real unit_ = 0;
-    bool is_tangent_ = false, is_thin_ = false;
-    ThinStroke<Real> thin_;
+    bool is_tangent_ = false;
     std::vector<Real> at_x_, at_y_;  // the points, in the group's coordinates, as it measures them
     std::vector<Real> shares_;
     PointRange met_;          // those that the group may cover
