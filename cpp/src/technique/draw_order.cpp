@@ -95,13 +95,17 @@ LargeArray<uint32_t> reordered_ranks(const LayerLook& look, const LayerRules& ru
     result.resize(slots.size());
     for (uint32_t slot = 0; slot < result.size(); ++slot)
         result[slot] = rank_of(ranks, slot);
-    // They share the ranks that they had.
-    std::vector<uint32_t> theirs;
-    for (const uint32_t slot : own)
-        theirs.push_back(result[slot]);
-    std::sort(theirs.begin(), theirs.end());
-    for (size_t i = 0; i < theirs.size(); ++i)
-        result[own[own.size() - 1 - i]] = theirs[i];
+    // They share the ranks that they had, of which no two are the same: marked, they need no sorting.
+    std::vector<bool> is_theirs;
+    for (const uint32_t slot : own) {
+        if (result[slot] >= is_theirs.size())
+            is_theirs.resize(size_t{result[slot]} + 1);
+        is_theirs[result[slot]] = true;
+    }
+    size_t next = own.size();
+    for (uint32_t rank = 0; rank < is_theirs.size(); ++rank)
+        if (is_theirs[rank])
+            result[own[--next]] = rank;
     return result;
 }
 
