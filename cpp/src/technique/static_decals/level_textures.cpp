@@ -49,12 +49,9 @@ LevelTextures::Fineness* LevelTextures::fineness_for(const View& view, const Pre
     const double bucket = look.grid.bucket_size;
     if (view.widest_pixel < FEWEST_TEXELS * bucket / LEVEL_TEXELS)
         return nullptr;
-    const auto is_enough = [&](const Fineness& each) {
-        return view.narrowest_pixel >= FEWEST_TEXELS * bucket / each.texels;
-    };
     Fineness* coarsest = &finenesses_.front();
     for (Fineness& each : finenesses_)
-        if (is_enough(each))
+        if (view.narrowest_pixel >= FEWEST_TEXELS * bucket / each.texels)
             coarsest = &each;
     return coarsest;
 }
