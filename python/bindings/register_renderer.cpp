@@ -252,7 +252,7 @@ void register_renderer(py::module_& module) {
                 return renderer.render(Background{low, high});
             },
             py::arg("sky_low"), py::arg("sky_high"))
-        .def("forget", &Renderer::forget)
+        .def("forget", &Renderer::forget, py::arg("ground"))
         .def("time_floor", &Renderer::time_floor)
         .def("count_fragments", &Renderer::count_fragments);
 

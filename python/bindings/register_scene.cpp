@@ -5,6 +5,7 @@
 
 #include "arrays.h"
 #include "decalgl/core/error.h"
+#include "decalgl/core/radix_sort.h"
 #include "decalgl/frame/scene.h"
 #include "decalgl/technique/clipmap_options.h"
 #include "decalgl/technique/dynamic_options.h"
@@ -178,6 +179,11 @@ void register_scene(py::module_& module) {
              py::arg("rows"), py::arg("fill"), py::arg("stroke"), py::arg("casing"), py::arg("outline_mode"),
              py::arg("outline_order"), py::arg("draw_order"))
         .def("set_triangles", &set_triangles, py::arg("layer"), py::arg("coordinates"), py::arg("first_of"));
+    module.def(
+        "ascending", [](const Array<double>& keys) { return array_of<int64_t>(ascending(span_of(keys))); },
+        py::arg("keys"),
+        "The places of the keys from the least to the greatest; equal keys keep their order, NaN is as "
+        "-inf.");
 }
 
 }  // namespace decalgl::bindings

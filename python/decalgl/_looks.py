@@ -472,7 +472,7 @@ def _draw_order(state: LayerState, order: Any) -> NDArray[np.int64]:
         if isinstance(order, str) and order == "feature":
             return np.arange(len(state.rows), dtype=np.int64)
         if isinstance(order, str) and order == "size":
-            return np.argsort(_sizes(state, state.layer), kind="stable").astype(np.int64)
+            return _core.ascending(_sizes(state, state.layer))
         return draw_order_by(order, state.rows, state.attributes)
     if isinstance(order, str):
         if order == "feature":
@@ -484,7 +484,7 @@ def _draw_order(state: LayerState, order: Any) -> NDArray[np.int64]:
     keys = np.asarray(order, dtype=np.float64)
     if keys.shape != (state.row_count,):
         raise InputError(f"order= has shape {keys.shape}, but the layer has {state.row_count} rows.")
-    return np.argsort(keys[state.rows], kind="stable").astype(np.int64)
+    return _core.ascending(keys[state.rows])
 
 
 def _sizes(state: LayerState, layer: Layer) -> NDArray[np.float64]:

@@ -185,7 +185,10 @@ def report(
         typer.Option(help="Of the scenes: offline, small, medium or large. By default as fits the size."),
     ] = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Keep what an earlier run into the same folder has measured.")
+        bool,
+        typer.Option(
+            "--resume", help="Keep what an earlier run of this commit measured into the same folder."
+        ),
     ] = False,
     redraw: Annotated[bool, typer.Option("--redraw", help="Only make the page of what is there.")] = False,
     docs: Annotated[bool, typer.Option("--docs", help="Only take what is there over into the docs.")] = False,

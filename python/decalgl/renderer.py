@@ -316,9 +316,12 @@ class Renderer:
         _warn_of_rounding(frame.stats["counts"])
         return Frame(frame, self._updated_layers, self._updated_states)
 
-    def forget(self) -> None:
-        """Makes the next `update` and `render` begin anew, for those who time them. What is uploaded stays."""
-        self._core.forget()
+    def forget(self, ground: bool = True) -> None:
+        """Makes the next `update` and `render` begin anew, for those who time them. What is uploaded stays.
+
+        ground: False keeps what was drawn of the terrain, as long as the camera stays.
+        """
+        self._core.forget(ground)
 
     def time_floor(self) -> float:
         """Milliseconds of the pass that overlay passes are measured against: read depth, write a colour."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from . import _core
 from ._choices import LayerRows
 from ._colors import colormap, parse_color
 from .camera import Camera
@@ -239,7 +240,8 @@ class Scene:
         slope_correction: None, widths as they are on the map; "tangent", as they are on the slope; "thoeny",
             narrower on slopes seen from the side (Thöny 2018).
         widest: metres that lines may be widened to later without preparing anew.
-        order: "feature" (later on top), "size" (longer on top), or a column or numbers (higher on top).
+        order: "feature" (later on top), "size" (longer on top), or a column or numbers (higher on top,
+            features without one lowest).
         The other arguments, and the errors, are those of `add_polygons`; StyleError too for widths that are
         not positive, UnsupportedError for what this version does not draw.
         """
@@ -375,12 +377,10 @@ def draw_order_of(order: Any, table: FeatureTable, attributes: Attributes) -> ND
     if isinstance(order, str) and order == "feature":
         return np.arange(len(table), dtype=np.int64)
     if isinstance(order, str) and order == "size":
-        return np.argsort(table.sizes(), kind="stable").astype(np.int64)
+        return _core.ascending(table.sizes())
     return draw_order_by(order, table.rows, attributes)
 
 
 def draw_order_by(order: Any, rows: NDArray[np.int64], attributes: Attributes) -> NDArray[np.int64]:
     """Features from bottom to top by a column or numbers, one a row. Raises ColumnError, InputError."""
-    keys = attributes.numbers(order, "order")[rows]
-    keys[np.isnan(keys)] = -np.inf
-    return np.argsort(keys, kind="stable").astype(np.int64)
+    return _core.ascending(attributes.numbers(order, "order")[rows])

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import decalgl as dg
-from decalgl.report import extremes, needless, scaling, stability
+from decalgl.bench import comparison
+from decalgl.report import case_studies, docs, extremes, needless, needless_maps, scaling, stability
 from decalgl.report.part import Context
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
+ROOT = Path(__file__).resolve().parents[2]
 SOME = [one for one in extremes.EXTREMES if one.name in ("angle", "coordinates")]
 
 
@@ -37,6 +38,22 @@ def stored(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return read
 
 
+def test_a_report_goes_on_where_one_of_the_same_commit_broke_off(context: Context) -> None:
+    measured: list[dict[str, Any]] = []
+
+    def measure() -> list[dict[str, Any]]:
+        measured.append({"scene": "a", "round": len(measured)})
+        return measured[-1:]
+
+    first, other = (replace(context, commit=commit) for commit in ("1234", "1234+"))
+    assert first.kept("some part", measure) == measured
+    again = replace(first, resume=True)
+    assert again.kept("some part", measure) == measured[:1]
+    assert again.seconds == first.seconds
+    assert replace(other, resume=True).kept("some part", measure) == [{"scene": "a", "round": 1}]
+    assert replace(other, resume=False).kept("some part", measure) == [{"scene": "a", "round": 2}]
+
+
 def test_no_technique_runs_what_a_scene_does_not_need() -> None:
     names = tuple(needless.WAYS)
     rows = [row for name in names for row in needless.states(name)]
@@ -51,16 +68,36 @@ def test_no_technique_runs_what_a_scene_does_not_need() -> None:
     assert weighed["dynamic lists"] < 3.0
 
 
+@pytest.mark.parametrize("name", ["floods", "rural", "isolines"])
+def test_no_technique_runs_what_a_map_does_not_need(name: str) -> None:
+    rows = list(needless_maps.of_map(case_studies.build(name, "tiny")))
+    assert [(row["technique"], row["needless"]) for row in rows if row["needless"]] == []
+    drawn = {row["technique"] for row in rows}
+    polygons_alone = {name for name, way in needless.WAYS.items() if way.fills}
+    assert drawn == (polygons_alone if name == "isolines" else set(needless.WAYS))
+    assert len(needless.figures(stored(rows))) == 3
+
+
 def test_what_is_needless_is_found() -> None:
-    needs = needless.Needs(needless.GROUND, uploads=10)
-    assert needless.surplus(["terrain", "upload"], ["static_decals[LENS,LINES]"], 11, {}, needs) == [
+    needs = needless.Needs(needless.GROUND, 10, frozenset({"static"}), view=False)
+    programs = ["static_decals[LENS,LINES]", "static_decals[RINGS]", "volume[NEW_FLAG]"]
+    held = {"static_bvh: polygons": 1}
+    assert needless.surplus(["terrain", "upload", "static", "volume"], programs, 11, held, needs) == [
         "pass upload",
+        "pass volume",
         "static_decals[LENS,LINES]: LENS",
+        "static_decals[RINGS]: RINGS",
+        "volume[NEW_FLAG]: NEW_FLAG",
         "1 of 11 bytes uploaded",
+        "the object static_bvh: polygons",
     ]
-    hidden = needless.Needs(needless.FIRST, 0, layers=False)
+    hidden = needless.Needs(needless.FIRST, 0)
     ran = needless.surplus(["upload", "static"], [], 0, {"frame: overlay": 1}, hidden)
     assert ran == ["pass static", "an overlay"]
+    recoloured = needless.Needs(needless.GROUND, 0, frozenset({"dynamic"}), view=False)
+    assert needless.surplus(["dynamic: project", "dynamic"], [], 0, {}, recoloured) == [
+        "pass dynamic: project"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -120,6 +157,16 @@ def test_figures_stand_on_rows_alone() -> None:
     }
 
 
+def test_every_verdict_that_is_not_exact_has_a_reason() -> None:
+    kept = comparison.read(ROOT / docs.KEPT)["records"]
+    rows = [row for row in kept if row["part"] == "stability"]
+    assert {row["extreme"] for row in rows} == {one.name for one in extremes.EXTREMES}
+    assert not [row for row in rows if row["verdict"] == "fails"]
+    table = stability.figures(rows)[1].table
+    assert table is not None
+    assert [row for row in table.rows if not row[3]] == []
+
+
 def test_all_extremes_make_scenes() -> None:
     for one in extremes.EXTREMES:
         assert set(one.quick) <= set(one.values), one.name
@@ -146,10 +193,13 @@ def test_exponents(power: float, noise: float) -> None:
 
 def test_scaling_measures_and_says_what_is_refused(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
     refusing = scaling.Way(dg.Static(), (1e5, 0, 0), {"memory_limit": 1000})
-    monkeypatch.setattr(scaling, "WAYS", {"static": scaling.WAYS["static"], "volume": refusing})
+    bvh = scaling.Way(dg.Static(), (1e5, 0, 0), {"index": "bvh"})
+    ways = {"static": scaling.WAYS["static"], "static bvh": bvh, "volume": refusing}
+    monkeypatch.setattr(scaling, "WAYS", ways)
     rows = stored(scaling.rows(context))
     sweeps = {row["sweep"] for row in rows}
     assert sweeps == set(scaling.SWEEPS)
+    assert not any(" " in name for row in rows for name in row), "a row has its own times alone"
     drawn = [row for row in rows if row["technique"] == "static" and row["sweep"] != "threads"]
     assert all(row["draw_ms"] > 0.0 and row["prepare_ms"] > 0.0 and row["held_bytes"] > 0 for row in drawn)
     assert all("memory limit" in row["error"] for row in rows if row["technique"] == "volume")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,19 @@ from decalgl import cli, reference
 from decalgl.bench import comparison
 from decalgl.bench.docs import marked
 from decalgl.errors import InputError
-from decalgl.report import case_studies, command, derive, docs, factors, page, parts, plots, views
+from decalgl.report import (
+    case_studies,
+    choices,
+    command,
+    derive,
+    docs,
+    error_over_time,
+    factors,
+    page,
+    parts,
+    plots,
+    views,
+)
 from decalgl.report.accuracy import seen_part
 from decalgl.report.part import Figure, Table, byte_count, number
 
@@ -61,16 +74,48 @@ def test_the_page_stands_alone_and_its_links_lead_somewhere(report: Path) -> Non
     found = Links(text)
     assert not found.open
     assert "url(http" not in text
-    pictures = 0
     for target in found.targets:
         assert "://" not in target, target
         if target.startswith("#"):
             assert target[1:] in found.anchors, target
         elif not target.startswith("data:"):
             assert (report / target).is_file(), target
-            pictures += target.endswith(".png")
-    assert pictures > 5
     assert set(parts.PARTS) <= found.anchors
+
+
+def test_choices_are_those_that_fit_best_and_draw_everything() -> None:
+    def row(setting: str, scene: str, frame: float, error: float, prepare: float) -> dict[str, Any]:
+        numbers = {"frame": frame, "edge_rms": error, "prepare_ms": prepare, "layers_bytes": 1e6}
+        return {"technique": "static", "setting": setting, "scene": scene, "view": "close", **numbers}
+
+    rows = [row("none", scene, 10.0, 0.2, 10.3) for scene in ("a", "b")]
+    rows += [row("coverage", scene, 20.0, 0.012, 10.1) for scene in ("a", "b")]
+    rows += [row("ssaa 16", scene, 160.0, 0.02, 12.0) for scene in ("a", "b")]
+    rows += [row("one scene alone", "a", 1.0, 0.0, 1.0)]
+    table = choices.figure(rows).table
+    assert table is not None
+    chosen = {line[0]: line[2] for line in table.rows}
+    assert chosen["the quickest picture"] == "none"
+    assert chosen["borders within 0.03, quickly"] == "coverage"
+    assert chosen["the most exact picture"] == "coverage"
+    assert chosen["ready the soonest"] == "none", "2 % are no difference, so the quickest of them"
+    assert chosen["lines as wide as on the screen, quickly"] == ""
+    assert choices.figure(rows[:2]).table.rows[1][1] == "none of them"  # type: ignore[union-attr]
+
+
+def test_every_point_leads_to_its_picture(report: Path) -> None:
+    rows = json.loads((report / "report.json").read_text())["records"]
+    drawn = [row for row in rows if row["part"] == "error_over_time" and "frame" in row]
+    settings = {(row["technique"], row["setting"]) for row in drawn}
+    expected = {"All scenes": len(settings), "All scenes: error over memory": len(settings)}
+    for scene in {row["scene"] for row in drawn}:
+        points = sum(row["scene"] == scene for row in drawn)
+        expected |= {f"{scene}: error over time": points, f"{scene}: error over memory": points}
+    figures = {figure.title: figure.plot for figure in error_over_time.figures(drawn)}
+    for title, points in expected.items():
+        links = re.findall(r'xlink:href="(pictures/[^"]+)"', str(figures[title]))
+        assert len(links) == points, title
+        assert all((report / link).is_file() for link in links)
 
 
 def test_rows_are_in_the_files(report: Path) -> None:
@@ -104,6 +149,13 @@ def test_the_documentation_is_that_of_the_last_report() -> None:
         text = (ROOT / page_name).read_text()
         assert marked("report").search(text), page_name
         assert docs.fill(text, results) == text, f"{page_name}: run decalgl report --out DIR --docs"
+
+
+@pytest.mark.parametrize("name", docs.PLOTS)
+def test_the_plots_of_the_documentation_are_those_of_the_last_report(name: str) -> None:
+    drawn = docs.plot(name, comparison.read(ROOT / docs.KEPT))
+    assert (ROOT / name).read_text(encoding="utf-8") == drawn, "run decalgl report --out DIR --docs"
+    assert any(Path(name).name in (ROOT / page_name).read_text() for page_name in docs.PAGES)
 
 
 @pytest.mark.parametrize("arguments", [{"size": "huge"}, {"names": ["colours"]}, {"step": "vast"}])

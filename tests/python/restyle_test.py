@@ -233,6 +233,22 @@ def test_a_far_view_is_restyled_too() -> None:
     np.testing.assert_array_equal(*pictures)
 
 
+def test_features_without_a_number_lie_lowest(tmp_path: Path) -> None:
+    """As if it were the least, in the order of first; when prepared, restyled, and restyled in a saved scene."""
+    scene = scene_of({}, {})
+    prepared(scene).save(tmp_path / "map.decal")
+    opened = dg.Renderer(SIZE, "none")
+    opened.open(tmp_path / "map.decal")
+    opened.update(OBLIQUE)
+    numbers = np.where(np.arange(40) % 3 == 0, np.nan, -np.arange(40.0))
+    expected = prepared(scene_of({"order": np.nan_to_num(numbers, nan=-100.0)}, {})).render()
+    assert_same(prepared(scene_of({"order": numbers}, {})).render(), expected)
+    for renderer in (opened, prepared(scene)):
+        assert (renderer.render().ids != expected.ids).any()
+        renderer.restyle("areas", order=numbers)
+        assert_same(renderer.render(), expected)
+
+
 def test_a_saved_scene_can_be_restyled(tmp_path: Path) -> None:
     scene = scene_of({"column": "kind"}, {})
     prepared(scene).save(tmp_path / "map.decal")

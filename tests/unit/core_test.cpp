@@ -14,8 +14,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <random>
@@ -220,6 +222,27 @@ TEST_CASE("a timing log sums passes by name") {
     CHECK(log.total() == 6.0);
     CHECK(log.total("terrain") == 5.0);
     CHECK(log.total("overlay") == 0.0);
+}
+
+TEST_CASE("ascending() is a stable sort of numbers of any sign, with NaN as -infinity") {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double> edges{0.0,  1.5, -0.0,      -2.0,    infinity, nan, 5e-324, -1e300,
+                                    -nan, 0.0, -infinity, -5e-324, 1e300,    nan, -2.0};
+    CHECK(ascending(edges) == std::vector<std::int64_t>{5, 8, 10, 13, 7, 3, 14, 11, 0, 2, 9, 6, 1, 12, 4});
+    CHECK(ascending({}).empty());
+
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> normal(0.0, 100.0);
+    std::vector<double> keys(50000);
+    std::generate(keys.begin(), keys.end(), [&] { return std::round(normal(random)) / 8.0; });
+    std::vector<std::int64_t> order(keys.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::int64_t left, std::int64_t right) { return keys[left] < keys[right]; });
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        CHECK(ascending(keys, threads) == order);
+    }
 }
 
 TEST_CASE("the radix sort is a stable sort, whatever the threads") {

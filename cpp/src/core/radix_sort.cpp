@@ -17,7 +17,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -112,6 +116,15 @@ void sort(Span<Key> keys, Span<std::uint32_t> payload, unsigned threads, unsigne
     }
 }
 
+/// Orders as the number does: both zeros are one, and NaN is -infinity.
+std::uint64_t sortable(double number) {
+    const double one = std::isnan(number) ? -std::numeric_limits<double>::infinity() : number + 0.0;
+    constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &one, sizeof(bits));
+    return (bits & sign) != 0 ? ~bits : bits | sign;
+}
+
 }  // namespace
 
 void radix_sort(Span<std::uint32_t> keys, Span<std::uint32_t> payload, unsigned threads, unsigned key_bits) {
@@ -120,6 +133,18 @@ void radix_sort(Span<std::uint32_t> keys, Span<std::uint32_t> payload, unsigned 
 
 void radix_sort(Span<std::uint64_t> keys, Span<std::uint32_t> payload, unsigned threads, unsigned key_bits) {
     sort(keys, payload, threads, key_bits);
+}
+
+std::vector<std::int64_t> ascending(Span<const double> keys, unsigned threads) {
+    if (keys.size() > std::numeric_limits<std::uint32_t>::max()) {
+        throw Error(ErrorKind::input, "ascending() takes fewer than 2^32 keys.");
+    }
+    std::vector<std::uint64_t> sorted(keys.size());
+    std::transform(keys.begin(), keys.end(), sorted.begin(), sortable);
+    std::vector<std::uint32_t> places(keys.size());
+    std::iota(places.begin(), places.end(), 0U);
+    radix_sort(Span<std::uint64_t>(sorted), Span<std::uint32_t>(places), threads);
+    return {places.begin(), places.end()};
 }
 
 }  // namespace decalgl

@@ -113,9 +113,14 @@ void Pipeline::upload_layers(const PreparedScene& scene) {
     }
 }
 
-void Pipeline::forget() {
+void Pipeline::forget(bool ground) {
     is_updated_ = false;
-    at_centres_ = nullptr;  // so that the view is set anew
+    if (ground)
+        at_centres_ = nullptr;  // so that the view is set anew
+    for (Drawer& drawer : drawers_) {
+        drawer.technique->forget_view();
+        drawer.is_updated = false;
+    }
 }
 
 void Pipeline::forget_costs() {

@@ -32,8 +32,9 @@ public:
     // it: nothing is done twice. Throws Error(memory) where the picture is larger than the driver can draw or the
     // budget holds.
     UpdateReport update(std::shared_ptr<const PreparedScene> scene, const PictureRequest& request);
-    // The next update and picture begin anew, for those who time them. What is uploaded stays.
-    void forget();
+    // The next update and picture begin anew, for those who time them, the ground's too if asked for. What is uploaded
+    // stays.
+    void forget(bool ground);
 
     // Everything below draws what update() was last given; arrays have row 0 at the top. The image is that of the
     // last call where nothing has changed since.

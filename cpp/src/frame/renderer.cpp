@@ -250,9 +250,9 @@ Frame Renderer::render(const Background& background) {
     return Frame(std::move(frame));
 }
 
-void Renderer::forget() {
+void Renderer::forget(bool ground) {
     if (state_->pipeline)
-        state_->pipeline->forget();
+        state_->pipeline->forget(ground);
 }
 
 double Renderer::time_floor() {

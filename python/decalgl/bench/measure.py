@@ -69,11 +69,15 @@ def drawing(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str)
         passes = draw(renderer, camera, antialias).stats.passes
         centres = _before_silhouettes(passes)
         layers = sum(one["ms"] for one in centres if one["name"] in LAYER_PASSES)
-        ground = sum(one["ms"] for one in centres if one["name"] in ("terrain", "compose"))
         frame = sum(one["ms"] for one in passes)
-        return {f"{name}_ms": layers, f"{name}_ground_ms": ground, f"{name}_frame_ms": frame}
+        return {f"{name}_ms": layers, f"{name}_ground_ms": ground_ms(centres), f"{name}_frame_ms": frame}
 
     return measure
+
+
+def ground_ms(passes: list[dict[str, Any]]) -> float:
+    """Milliseconds of terrain and composing among passes of a frame."""
+    return float(sum(one["ms"] for one in passes if one["name"] in ("terrain", "compose")))
 
 
 def _before_silhouettes(passes: list[dict[str, Any]]) -> list[dict[str, Any]]:

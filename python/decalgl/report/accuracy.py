@@ -53,6 +53,7 @@ class Judge:
         self.crop: Crop = (left, top, left + wide, top + high)
         self._truth: dict[tuple[str, bool], Overlay] = {}
         self._renderers: dict[str, dg.Renderer] = {}
+        self._scenes: dict[tuple[str, dg.Relief], dg.Scene] = {}  # of the techniques that were judged last
 
     def judge(self, setting: Setting) -> dict[str, Judged]:
         """The errors of a setting by view. Raises DecalError where it does not draw the map."""
@@ -74,7 +75,7 @@ class Judge:
         key = repr(sorted(options.items(), key=str))
         renderer = self._renderers.setdefault(key, dg.Renderer(self._size, **options))
         renderer.set_picture(self._size, setting.antialias)
-        renderer.preprocess(self._map.scene(setting.polygons, setting.lines, setting.pixels, relief))
+        renderer.preprocess(self._scene(setting, relief))
         pictures, held = {}, {}
         for view, camera in self._cameras.items():
             renderer.update(camera)
@@ -82,6 +83,16 @@ class Judge:
             pictures[view] = frame.image[..., :3] / 255.0
             held[view] = sum(count for name, count in frame.stats.bytes.items() if name in LAYER_PASSES)
         return pictures, held
+
+    def _scene(self, setting: Setting, relief: dg.Relief) -> dg.Scene:
+        """Settings that follow each other often draw the same scenes."""
+        techniques = repr((setting.polygons, setting.lines, setting.pixels))
+        if (techniques, BLACK) not in self._scenes:
+            self._scenes = {
+                (techniques, each): self._map.scene(setting.polygons, setting.lines, setting.pixels, each)
+                for each in (BLACK, WHITE)
+            }
+        return self._scenes[techniques, relief]
 
     def _compared(
         self, setting: Setting, view: str, black: FloatArray, white: FloatArray

@@ -1,13 +1,14 @@
 """Eight maps in the character of Zechmeister 2020, section 5.1, in steps of size, from data that registries carry.
 
-    isolines      water depths: few areas, many holes                    derived
+    isolines      bands of height: few areas, many holes                 derived
     urban         OpenStreetMap of a town                                Helsinki
     rural         land cover, streams and roads of a mountain range      Honolulu
     sewers        dense catchments in many colours                       derived
     rivers        rivers and lakes of a country                          derived
     buildings     a large city with a colour for each building           Helsinki, side by side
     floods        jagged areas with very many holes                      derived
-    catchments    river catchments with outlines: the most vertices      derived
+    catchments    river catchments with outlines: the most vertices of   derived
+                  what is not copied
 
 What is derived comes from real terrain models (derive.py): without a network from matplotlib's sample of the Jacksboro
 fault in Tennessee (SRTM, 3 arc-seconds), else from San Francisco bay (SRTM, 1 arc-second). No registry carries a town

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 TITLE = "decalgl: error against run time"
 NOTE = (
-    "Every figure comes from the rows in report.json. Times are medians of rounds in which all that is compared takes"
-    " turns; errors are those against decalgl.reference, and the same on every run."
+    "Every figure comes from the rows in report.json. Times of drawing are medians of rounds in which what is compared"
+    " takes turns, but along camera paths; preparing is timed once unless a spread stands beside it. Errors are those"
+    " against decalgl.reference, and the same on every run."
 )
 STEPS_KNOWN = ("tiny", "offline", "small", "medium", "large")
 # Of the full report there are 1500 pictures and 64 references: larger ones would make hours days.
@@ -41,8 +42,8 @@ def make(
 ) -> Path:
     """Measures the parts of these names, all where none is given, and writes the page. Raises DecalError.
 
-    step: of the case studies, by default as fits the size. resume: takes what an earlier run into the same folder has
-    measured as it is.
+    step: of the case studies, by default as fits the size. resume: takes what an earlier run of this commit into the
+    same folder has measured as it is.
     """
     if size not in SIZES:
         raise errors.InputError(f"There is no --size {size!r}. Choose from {', '.join(SIZES)}.")
@@ -52,6 +53,7 @@ def make(
     if unknown:
         raise errors.InputError(f"There is no --part {unknown[0]!r}. Choose from {', '.join(PARTS)}.")
     chosen: Size = size
+    machine = measure.machine()
     context = Context(
         size=chosen,
         step=cast("Step", step) if step else STEPS[chosen],
@@ -62,6 +64,7 @@ def make(
         runs=RUNS[chosen],
         say=say or Console(stderr=True, highlight=False).print,
         resume=resume,
+        commit=machine["commit"],
     )
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -77,7 +80,7 @@ def make(
         parts[name] = {"size": size, "step": context.step, "runs": context.runs, "seconds": seconds}
         context.say(f"{seconds} s")
         # After each part, so that a report that breaks off keeps what it has.
-        results = {"machine": measure.machine(), "parts": parts, "records": records}
+        results = {"machine": machine, "parts": parts, "records": records}
         (out / "report.json").write_text(as_text(results))
     return write(out)
 

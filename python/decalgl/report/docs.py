@@ -2,7 +2,7 @@
 
 The report's numbers are kept in bench/results/report.json; parts that a report leaves out stay as they were kept, each
 with the size and the machine that it was measured with. What stands between <!-- report:NAME --> and
-<!-- /report --> of a page is replaced by what `BLOCKS` makes for NAME, and the plot over all scenes is redrawn.
+<!-- /report --> of a page is replaced by what `BLOCKS` makes for NAME, and `PLOTS` are drawn anew.
 """
 
 from __future__ import annotations
@@ -12,22 +12,23 @@ from typing import TYPE_CHECKING
 from ..bench import comparison, folders
 from ..bench.docs import filled
 from ..errors import InputError
-from . import choices, error_over_time, sizes, stability
+from . import choices, error_over_time, factors, needless, scaling, scenes, sizes, stability
 from .command import as_text
+from .extremes import EXTREMES
 from .part import number
 from .parts import PARTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
     from typing import Any
 
-    from .part import Row, Table
+    from .part import Figure, Row, Table
 
     Results = Mapping[str, Any]
 
 PAGES = ("README.md", "docs/report.md", "docs/extremes.md")
-PLOT = "docs/images/error_over_time.svg"
+IMAGES = "docs/images"
 KEPT = "bench/results/report.json"
 DIGITS = 5  # of the numbers that are kept
 
@@ -40,11 +41,12 @@ def update(out: Path) -> list[Path]:
     kept = root / KEPT
     results = merged(comparison.read(kept), comparison.read(out / "report.json"))
     kept.write_text(as_text(results))
-    (root / PLOT).write_text(plot(results), encoding="utf-8")
+    for name in PLOTS:
+        (root / name).write_text(plot(name, results), encoding="utf-8")
     for page in PAGES:
         path = root / page
         path.write_text(fill(path.read_text(), results))
-    return [root / name for name in (KEPT, PLOT, *PAGES)]
+    return [root / name for name in (KEPT, *PLOTS, *PAGES)]
 
 
 def merged(kept: Results, new: Results) -> dict[str, Any]:
@@ -64,11 +66,12 @@ def _rounded(value: Any) -> Any:
     return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
 
 
-def plot(results: Results) -> str:
-    """The plot over all scenes, as the text of an SVG file."""
-    figure = error_over_time.over_all(_drawn(results))
-    assert isinstance(figure.plot, str)
-    return figure.plot
+def plot(name: str, results: Results) -> str:
+    """The text of an SVG file of that path; its points lead nowhere, as pictures lie with the report."""
+    part, figure = PLOTS[name]
+    drawn = figure([{**row, "picture": ""} for row in _rows(results, part)]).plot
+    assert isinstance(drawn, str)
+    return drawn
 
 
 def fill(text: str, results: Results) -> str:
@@ -84,12 +87,9 @@ def _choices(results: Results) -> str:
     return f"{_lines(table)}\n\nOf the scenes {', '.join(scenes)}. {_origin(results, 'error_over_time')}"
 
 
-def _sizes(results: Results) -> str:
-    return f"{_lines(sizes.table(_rows(results, 'sizes')))}\n\n{_origin(results, 'sizes')}"
-
-
-def _verdicts(results: Results) -> str:
-    return f"{_lines(stability.verdicts(_rows(results, 'stability')))}\n\n{_origin(results, 'stability')}"
+def _table(part: str, make: Callable[[Sequence[Row]], Table]) -> Callable[[Results], str]:
+    """A block: a table of a part's rows, and what they were measured with."""
+    return lambda results: f"{_lines(make(_rows(results, part)))}\n\n{_origin(results, part)}"
 
 
 def _times(results: Results) -> str:
@@ -100,12 +100,31 @@ def _times(results: Results) -> str:
     return f"Minutes that the parts took when the figures here were measured: {', '.join(cells)}."
 
 
+FEATURE_SIZE = next(one for one in EXTREMES if one.name == "feature size")
+# Files, the parts whose rows they are drawn of, and how.
+PLOTS: dict[str, tuple[str, Callable[[list[Row]], Figure]]] = {
+    f"{IMAGES}/error_over_time.svg": ("error_over_time", lambda rows: _over_all(rows)[0]),
+    f"{IMAGES}/error_over_memory.svg": ("error_over_time", lambda rows: _over_all(rows)[1]),
+    f"{IMAGES}/zoom.svg": ("scenes", lambda rows: scenes.path_figure(rows, "catchments", "zoom")),
+    f"{IMAGES}/drawing_over_segments.svg": (
+        "scaling",
+        lambda rows: scaling.over(rows, "segments", "draw_ms"),
+    ),
+    f"{IMAGES}/error_over_feature_size.svg": ("stability", lambda rows: stability.curves(rows, FEATURE_SIZE)),
+}
 BLOCKS: dict[str, Callable[[Results], str]] = {
     "choices": _choices,
-    "sizes": _sizes,
+    "exponents": _table("scaling", scaling.exponents),
+    "held": _table("needless", needless.weighed),
+    "signs": _table("factors", factors.signs),
+    "sizes": _table("sizes", sizes.table),
     "times": _times,
-    "verdicts": _verdicts,
+    "verdicts": _table("stability", stability.verdicts),
 }
+
+
+def _over_all(rows: Sequence[Row]) -> list[Figure]:
+    return error_over_time.over_all([row for row in rows if "frame" in row])
 
 
 def _lines(table: Table) -> str:
@@ -117,9 +136,11 @@ def _origin(results: Results, part: str) -> str:
     """What a part was measured with."""
     one = results["parts"][part]
     machine = one["machine"]
+    commit = str(machine["commit"])
+    changed = ", with changes" if commit.endswith("+") else ""
     return (
         f"Of the {one['size']} report, on {machine['cores']} cores of an {machine['processor']} with"
-        f" {machine['driver']}; commit {str(machine['commit'])[:8]}."
+        f" {machine['driver']}; commit {commit[:8]}{changed}."
     )
 
 

@@ -25,11 +25,12 @@ if TYPE_CHECKING:
 
 TITLE = "Error against run time"
 TOGETHER = 6  # renderers that are held at once
-PATIENCE = 4.0  # seconds: frames that take longer are drawn once
+ERROR = "error at borders (rms, of 1)"  # of the axes
+PATIENCE = 1.0  # seconds: frames that take longer are drawn once
 ABOUT = (
     "Each point is a technique with a setting. Time is that of a whole frame, and of what it adds to"
     " terrain and composing, both divided by the floor, a pass that reads depth and writes a colour for every"
-    f" pixel; frames of more than {PATIENCE:g} seconds are drawn once. The error is the root mean square of the"
+    f" pixel; frames of more than {PATIENCE:g} second are drawn once. The error is the root mean square of the"
     " difference to the reference, of 1, over the pixels of a crop that"
     " a border passes (an edge's), over all pixels of the crop (the image's), and of the coverage alone. Dynamic lines"
     " are as wide as on the screen and are compared with a reference that draws them so; techniques that draw only"
@@ -133,7 +134,7 @@ def _time(
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """Plots over all scenes and for each, and tables."""
     drawn = [row for row in rows if "frame" in row]
-    found = [over_all(drawn), choices.figure(drawn), *_approaches(drawn)]
+    found = [*over_all(drawn), choices.figure(drawn), *_approaches(drawn)]
     for scene in dict.fromkeys(row["scene"] for row in drawn):
         own = [row for row in drawn if row["scene"] == scene]
         found.append(_time_plot(scene, own))
@@ -150,20 +151,29 @@ def figures(rows: Sequence[Row]) -> list[Figure]:
     return found
 
 
-def over_all(rows: Sequence[Row]) -> Figure:
-    """One point a setting: medians over scenes and views."""
-    points = []
-    for group, setting in dict.fromkeys((row["technique"], row["setting"]) for row in rows):
-        own = [row for row in rows if (row["technique"], row["setting"]) == (group, setting)]
-        time = statistics.median(row["frame"] for row in own)
+def over_all(rows: Sequence[Row]) -> list[Figure]:
+    """Error over time and over memory: one point a setting, medians over scenes and views."""
+    settings: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        settings.setdefault((row["technique"], row["setting"]), []).append(row)
+    times, bytes_held = [], []
+    for (group, setting), own in settings.items():
+        middle = sorted(own, key=lambda row: row["edge_rms"])[len(own) // 2]
         error = statistics.median(row["edge_rms"] for row in own)
-        points.append(plots.Point(time, error, group, f"{group}, {setting}"))
-    return Figure(
-        "All scenes",
-        "Medians over all scenes and views that a setting draws. The dashed line joins those that no other beats in"
-        " both time and error.",
-        plots.scatter(points, "frame ÷ floor", "error at borders (rms, of 1)"),
+        label = f"{group}, {setting}"
+        time = statistics.median(row["frame"] for row in own)
+        times.append(plots.Point(time, error, group, label, middle["picture"]))
+        held = statistics.median(row["layers_bytes"] for row in own)
+        if held:
+            bytes_held.append(plots.Point(held / 1e6, error, group, label, middle["picture"]))
+    caption = (
+        "Medians over all scenes and views that a setting draws; each point leads to the picture whose error is the"
+        " middle one. The dashed line joins those that no other beats in both."
     )
+    return [
+        Figure("All scenes", caption, plots.scatter(times, "frame ÷ floor", ERROR)),
+        Figure("All scenes: error over memory", caption, plots.scatter(bytes_held, "MB", ERROR)),
+    ]
 
 
 def _approaches(rows: Sequence[Row]) -> list[Figure]:
@@ -207,7 +217,7 @@ def _time_plot(scene: str, rows: Sequence[Row]) -> Figure:
     return Figure(
         f"{scene}: error over time",
         "Each point leads to its picture.",
-        plots.scatter(points, "frame ÷ floor", "error at borders (rms, of 1)"),
+        plots.scatter(points, "frame ÷ floor", ERROR),
     )
 
 
@@ -222,7 +232,7 @@ def _memory_plot(scene: str, rows: Sequence[Row]) -> Figure:
     return Figure(
         f"{scene}: error over memory",
         "Prepared data and GL objects of the layers, in megabytes.",
-        plots.scatter(points, "MB", "error at borders (rms, of 1)"),
+        plots.scatter(points, "MB", ERROR),
     )
 
 

@@ -111,7 +111,8 @@ def _floor(renderer: dg.Renderer, value: str) -> Measure:
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """Table 5.4, the disagreements with their reasons, and a plot for each factor."""
     every, rows = rows, [row for row in rows if "refused" not in row]
-    found = [_signs_figure(rows), _reasons_figure(rows)]
+    caption = "M, U, R: memory, preparing (the thesis's update), drawing, as the factor grows."
+    found = [Figure("Table 5.4: factors and their signs", caption, table=signs(rows)), _reasons_figure(rows)]
     for factor in FACTORS:
         own = [row for row in rows if (row["factor"], row["decals"]) == (factor.name, factor.decals)]
         if own:
@@ -162,13 +163,15 @@ def _of(rows: Sequence[Row], factor: Factor, way: str) -> list[Row]:
     return [row for row in rows if (row["factor"], row["decals"], row["technique"]) == key]
 
 
-def _signs_figure(rows: Sequence[Row]) -> Figure:
+def signs(rows: Sequence[Row]) -> Table:
+    """Table 5.4 with our signs beside the thesis's."""
     cells = []
+    rows = [row for row in rows if "refused" not in row]
     for factor in FACTORS:
         ours = {way: own for way in factor.ways if (own := _of(rows, factor, way))}
         if not ours:
             continue
-        signs = [
+        found = [
             sign(own, column)
             for way in ("published", "ours")
             for column in COLUMNS
@@ -176,19 +179,15 @@ def _signs_figure(rows: Sequence[Row]) -> Figure:
             if own
         ]
         blank = ["no such choice"] + [""] * 2
-        published = signs[:3] if "published" in ours else blank
-        own_signs = signs[-3:] if "ours" in ours else blank
+        published = found[:3] if "published" in ours else blank
+        own_signs = found[-3:] if "ours" in ours else blank
         values = [row["value"] for row in sorted(next(iter(ours.values())), key=lambda row: row["rank"])]
         span = f"{values[0]}, {values[-1]}"
         cells.append((factor.decals, factor.name, span, *factor.signs, *published, *own_signs))
     heads = [
         f"{who}: {name[0].upper()}" for who in ("thesis", "published", "ours") for name in COLUMNS.values()
     ]
-    return Figure(
-        "Table 5.4: factors and their signs",
-        "M, U, R: memory, preparing (the thesis's update), drawing, as the factor grows.",
-        table=Table(("decals", "factor", "from, to", *heads), cells),
-    )
+    return Table(("decals", "factor", "from, to", *heads), cells)
 
 
 def _reasons_figure(rows: Sequence[Row]) -> Figure:

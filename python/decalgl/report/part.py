@@ -35,7 +35,7 @@ ROWS = "rows"
 class Context:
     """What a part is measured with.
 
-    size: how much to measure: "tiny" for tests, "quick" for CI (half a minute a part, no network), "full".
+    size: how much to measure: "tiny" for tests, "quick" for CI (some minutes in all, no network), "full".
     step: how large the case studies are.
     out: the folder of the page; pictures go into a folder there.
     data: where data is kept that was fetched or derived.
@@ -43,7 +43,8 @@ class Context:
         reference.
     runs: rounds of which medians are taken.
     say: tells the user what is going on.
-    resume: whether what an earlier run into the same folder measured is taken as it is.
+    resume: whether what an earlier run of the same commit into the same folder measured is taken as it is.
+    commit: that of the checkout; None for an installed package.
     seconds: how long what is kept took, by name. spared: those of what was resumed.
     """
 
@@ -56,6 +57,7 @@ class Context:
     step: Step = "offline"
     say: Callable[[str], None] = print
     resume: bool = False
+    commit: str | None = None
     seconds: dict[str, float] = field(default_factory=dict)
     spared: list[float] = field(default_factory=list)
 
@@ -69,9 +71,9 @@ class Context:
         name: of what is measured; `seconds` then says how long it took, runs that broke off included.
         """
         path = self.out / ROWS / f"{self.size}_{self.step}_{_file_name(name)}.json"
-        if self.resume and path.is_file():
+        stored = json.loads(path.read_text()) if self.resume and path.is_file() else None
+        if stored and stored.get("commit") == self.commit:
             self.say(f"{name}: as measured before")
-            stored = json.loads(path.read_text())
             self.seconds[name] = stored["seconds"]
             self.spared.append(stored["seconds"])
             return list(stored["rows"])
@@ -79,7 +81,8 @@ class Context:
         rows = measure()
         self.seconds[name] = time.monotonic() - started + sum(self.spared[spared:])
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps({"seconds": self.seconds[name], "rows": rows}))
+        kept = {"commit": self.commit, "seconds": self.seconds[name], "rows": rows}
+        path.write_text(json.dumps(kept))
         return rows
 
     def save_picture(self, name: str, image: NDArray[Any]) -> str:
@@ -88,7 +91,7 @@ class Context:
 
         path = self.out / PICTURES / f"{_file_name(name)}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
-        Image.fromarray(image).convert("RGB").save(path, optimize=self.size != "tiny")
+        Image.fromarray(image).convert("RGB").save(path)
         return f"{PICTURES}/{path.name}"
 
 

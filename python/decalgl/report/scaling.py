@@ -191,8 +191,9 @@ def _floor(renderer: dg.Renderer, name: str) -> Measure:
 
 
 def _own(times: Times, name: str) -> Times:
-    """Those of one measure, without its name."""
-    return {key.removeprefix(f"{name} "): value for key, value in times.items() if key.startswith(f"{name} ")}
+    """Those of one measure, without its name; names may hold spaces, and begin as others do."""
+    words = {key: key.rpartition(" ") for key in times}
+    return {own: times[key] for key, (whose, _, own) in words.items() if whose == name}
 
 
 # Scenes
@@ -295,16 +296,19 @@ SWEEPS: dict[str, tuple[str, tuple[tuple[str, str], ...]]] = {
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """A plot for each count and value, and a table of all exponents."""
     found = [
-        _figure(rows, sweep, name, label)
+        over(rows, sweep, name)
         for sweep, (_, values) in SWEEPS.items()
-        for name, label in values
+        for name, _ in values
         if any(row["sweep"] == sweep and name in row for row in rows)
     ]
-    return [_exponent_table(rows), *found]
+    caption = "With their standard errors; times in milliseconds."
+    return [Figure("Exponents", caption, table=exponents(rows)), *found]
 
 
-def _figure(rows: Sequence[Row], sweep: str, name: str, label: str) -> Figure:
-    axis, _ = SWEEPS[sweep]
+def over(rows: Sequence[Row], sweep: str, name: str) -> Figure:
+    """A value over what a sweep counts, for each technique."""
+    axis, values = SWEEPS[sweep]
+    label = dict(values)[name]
     lines = {way: [(x, y) for x, y, _ in points] for way, points in _series(rows, sweep, name).items()}
     refused = [f"{row['technique']} at {row['count']:g}: {row['error']}" for row in rows
                if row["sweep"] == sweep and "error" in row]  # fmt: skip
@@ -325,7 +329,8 @@ def _series(rows: Sequence[Row], sweep: str, name: str) -> dict[str, list[tuple[
     return found
 
 
-def _exponent_table(rows: Sequence[Row]) -> Figure:
+def exponents(rows: Sequence[Row]) -> Table:
+    """What fits the first and last values of each sweep and technique."""
     lines = []
     for sweep, (axis, values) in SWEEPS.items():
         for name, label in values:
@@ -340,6 +345,4 @@ def _exponent_table(rows: Sequence[Row]) -> Figure:
                      str(fitted)]
                 )  # fmt: skip
     columns = ["over", "what", "technique", "from … to", "first", "last", "exponent"]
-    return Figure(
-        "Exponents", "With their standard errors; times in milliseconds.", table=Table(columns, lines)
-    )
+    return Table(columns, lines)

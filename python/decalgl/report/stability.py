@@ -126,12 +126,17 @@ REASONS = {
         "coordinates",
         "*",
     ): "maps reach to 1e9 m, 25 times around the Earth; what lies beyond is taken for a mistake",
+    (
+        "sliver",
+        "*",
+    ): "from 1e10 m on its end lies beyond 1e9 m, farther than maps reach",
     ("miter", "loops"): "draws round corners alone",
     ("miter", "distance_field"): "draws round corners alone",
     (
         "overlap",
         "static bvh",
     ): "trees of boxes repeat each feature in every cell, up to the driver's largest array",
+    ("vertices", "static bvh"): "its trees of boxes have more nodes than an array that shaders read",
     ("overlap", "volume"): "each colour is blended into bytes, and rounding adds up",
     ("overlap", "clipmap"): "each feature is blended into bytes, and rounding adds up",
     ("*", "loops"): "simplified by up to half a pixel, as was asked for",
@@ -223,7 +228,7 @@ def reference_colors(scene: dg.Scene, case: Case, points: FloatArray) -> FloatAr
 
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """The table of verdicts, then curves of each extreme."""
-    return [_verdict_figure(rows), _reason_table(rows), *(_curves(rows, one) for one in _driven_in(rows))]
+    return [_verdict_figure(rows), _reason_table(rows), *(curves(rows, one) for one in _driven_in(rows))]
 
 
 def _driven_in(rows: Sequence[Row]) -> list[Extreme]:
@@ -287,7 +292,7 @@ def _reason_table(rows: Sequence[Row]) -> Figure:
                 continue
             worst = _worst(own)
             said = worst.get("error") or worst.get("warning") or ""
-            lines.append([extreme.title, technique, _cell(own), _reason(extreme.name, technique), said])
+            lines.append([extreme.title, technique, _cell(own), _reason(extreme.name, worst), said])
     return Figure(
         "Where techniques begin to be off, and why",
         "What they say themselves is the error or the warning that was raised.",
@@ -295,12 +300,17 @@ def _reason_table(rows: Sequence[Row]) -> Figure:
     )
 
 
-def _reason(extreme: str, technique: str) -> str:
-    known = ((extreme, technique), (extreme, "*"), ("*", technique), ("*", "*"))
-    return next(REASONS[key] for key in known if key in REASONS)
+def _reason(extreme: str, worst: Row) -> str:
+    """What a technique always does explains a picture that is off, and no refusal."""
+    technique = worst["technique"]
+    known = [(extreme, technique), (extreme, "*")]
+    if worst["verdict"] != REFUSES:
+        known += [("*", technique), ("*", "*")]
+    return next((REASONS[key] for key in known if key in REASONS), "")
 
 
-def _curves(rows: Sequence[Row], extreme: Extreme) -> Figure:
+def curves(rows: Sequence[Row], extreme: Extreme) -> Figure:
+    """Shares of pixels that are off over the values of an extreme, for each technique."""
     figure, axes = plots.new()
     for place, technique in enumerate(WAYS):
         own = [row for row in _of(rows, extreme, technique) if "far" in row]

@@ -5,6 +5,7 @@
 #include "decalgl/core/span.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace decalgl {
 
@@ -16,5 +17,9 @@ void radix_sort(Span<std::uint32_t> keys, Span<std::uint32_t> payload, unsigned 
                 unsigned key_bits = 0);
 void radix_sort(Span<std::uint64_t> keys, Span<std::uint32_t> payload, unsigned threads = 0,
                 unsigned key_bits = 0);
+
+/// The places of `keys` from the least to the greatest; equal keys keep their order, NaN is as -infinity.
+/// Throws Error(input) for 2^32 keys or more.
+std::vector<std::int64_t> ascending(Span<const double> keys, unsigned threads = 0);
 
 }  // namespace decalgl

@@ -80,8 +80,9 @@ public:
     // scene costs nothing. Throws Error(graphics) where no GL can be had, naming what was tried and what to install.
     UpdateReport update(const Camera& camera);
     Frame render(const Background& background = {});
-    // The next update and picture begin anew, for those who time them. What is uploaded stays.
-    void forget();
+    // The next update and picture begin anew, for those who time them; those of the ground only if asked for. What is
+    // uploaded stays.
+    void forget(bool ground);
 
     // Milliseconds of the pass that overlay passes are measured against, at the current picture.
     double time_floor();

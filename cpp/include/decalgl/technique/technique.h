@@ -204,6 +204,8 @@ public:
     virtual UpdateReport update(const View& view) = 0;
     // Whether what the latest update made holds after the upload that followed: then the same view is not updated again.
     virtual bool keeps_update() const { return false; }
+    // Drops what `update` keeps beyond the view that it was found for, for those who time it.
+    virtual void forget_view() {}
     // Whether `draw` needs a depth attachment for itself, with whatever values.
     virtual bool needs_depth(const View&) const { return false; }
     // Whether `draw` and `draw_ids` need a depth attachment with a stencil.

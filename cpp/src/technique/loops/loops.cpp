@@ -127,6 +127,10 @@ std::shared_ptr<const Loops::Cells> Loops::cells_of(const View& view, Cells want
     return std::make_shared<const Cells>(std::move(wanted));
 }
 
+void Loops::forget_view() {
+    outside_.cells = inside_.cells = nullptr;
+}
+
 UpdateReport Loops::update(const View& view) {
     const LoopsIndex& index = *uploaded_;
     UpdateReport report;

@@ -94,7 +94,7 @@ def _modes(work: Workload, records: Records, kind: str) -> None:
 
 
 def _slow_coverage(work: Workload, records: Records) -> None:
-    """Lines alone, and once: Thöny's, which looks into all cells around, and that of trees, with 32 walks a pixel."""
+    """Lines alone, and once: Thöny's, which looks into all cells around, and that of trees, with 64 walks a pixel."""
     scene = _scene(work, "isolines", {})
     options: dict[str, tuple[str, Looks]] = {
         "coverage thoeny": ("grid", {"coverage": "thoeny"}),
