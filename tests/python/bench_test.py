@@ -156,6 +156,36 @@ def test_each_part_of_a_report_has_its_own_drift() -> None:
     assert not few.worse, "spreads of two rounds may be small by chance"
 
 
+def test_what_is_lost_is_told() -> None:
+    """Errors, verdicts that are worse, what is refused now, and rows that are no longer there."""
+    before, after = results(5.0, 10.0, 1000), results(5.0, 10.0, 1000)
+    before["records"] += [
+        {"scene": "town", "view": "top", "edge_rms": 0.01, "leak": 0.0, "verdict": "exact"},
+        {"scene": "sea", "view": "top", "held_bytes": 1},
+        {"scene": "moon", "view": "top", "held_bytes": 1},
+    ]
+    after["records"] += [
+        {
+            "scene": "town",
+            "view": "top",
+            "edge_rms": 0.02,
+            "leak": 0.0,
+            "verdict": "warns",
+            "warning": "Far.",
+        },
+        {"scene": "sea", "view": "top", "refused": "Too deep."},
+    ]
+    found = comparison.compare(before, after)
+    assert [(one.name, one.share) for one in found.worse] == [("edge_rms", 2.0)]
+    assert found.lost == [
+        "town, top: exact, then warns.",
+        "sea, top: Too deep.",
+        "moon, top: is no longer measured.",
+    ]
+    assert comparison.compare(before, before).lost == []
+    assert "Too deep." in comparison.summary(found)
+
+
 def test_runs_without_anything_in_common_are_refused() -> None:
     with pytest.raises(InputError, match="in common"):
         comparison.compare({"records": []}, results(5.0, 10.0, 1000))

@@ -12,7 +12,16 @@ import pytest
 
 import decalgl as dg
 from decalgl.bench import comparison
-from decalgl.report import case_studies, docs, extremes, needless, needless_maps, scaling, stability
+from decalgl.report import (
+    case_studies,
+    docs,
+    extremes,
+    needless,
+    needless_maps,
+    odd_inputs,
+    scaling,
+    stability,
+)
 from decalgl.report.part import Context
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -165,6 +174,17 @@ def test_every_verdict_that_is_not_exact_has_a_reason() -> None:
     table = stability.figures(rows)[1].table
     assert table is not None
     assert [row for row in table.rows if not row[3]] == []
+
+
+@pytest.mark.parametrize("name", odd_inputs.ODD_INPUTS)
+def test_odd_inputs_are_drawn_right_or_refused(name: str) -> None:
+    """Refused are points that are no numbers and lines without a width, and nothing else; textures are filtered."""
+    is_refused = name in ("points that are no numbers", "points at infinity", "lines of width 0")
+    case = odd_inputs.ODD_INPUTS[name]()
+    for technique, way in stability.WAYS.items():
+        row = stability.judged(way, case)
+        right = {"exact", "within tolerance"} if technique == "clipmap" else {"exact"}
+        assert row["verdict"] in ({"refuses with an error"} if is_refused else right), (technique, row)
 
 
 def test_all_extremes_make_scenes() -> None:

@@ -151,6 +151,15 @@ def test_the_documentation_is_that_of_the_last_report() -> None:
         assert docs.fill(text, results) == text, f"{page_name}: run decalgl report --out DIR --docs"
 
 
+def test_each_disagreement_with_the_thesis_is_explained() -> None:
+    kept = comparison.read(ROOT / docs.KEPT)["records"]
+    rows = [row for row in kept if row["part"] == "factors" and "factor" in row and "refused" not in row]
+    assert {row["factor"] for row in rows} == {factor.name for factor in factors.FACTORS}
+    found = factors.disagreements(rows)
+    assert found
+    assert [one[:5] for one in found if not one[5]] == []
+
+
 @pytest.mark.parametrize("name", docs.PLOTS)
 def test_the_plots_of_the_documentation_are_those_of_the_last_report(name: str) -> None:
     drawn = docs.plot(name, comparison.read(ROOT / docs.KEPT))

@@ -76,7 +76,7 @@ def compare(before: Path, after: Path) -> bool:
     """Shows what changed from one file of results to another; whether nothing got slower or larger."""
     found = comparison.compare(comparison.read(before), comparison.read(after))
     Console(width=130).print(comparison.table(found), comparison.summary(found))
-    return not found.worse
+    return not found.worse and not found.lost
 
 
 def _chosen(option: str, names: list[str], known: list[str]) -> list[str]:

@@ -3,7 +3,7 @@
 Times come with their spread, half of what lies between the quartiles. A machine that is slower today is so for the
 passes that no change touches too, the floor and the radix sort: times are divided by how much longer those took, their
 drift, that of the same scene or part where it has some, since hours may lie between them. How far drifts lie apart is
-noise. Bytes have none.
+noise. Bytes have none, and errors next to none. What is refused, gone, or judged worse is told too.
 """
 
 from __future__ import annotations
@@ -28,13 +28,26 @@ if TYPE_CHECKING:
     Pair = tuple[Record, Record]
 
 CONTROLS = ("floor_ms", "radix_sort_ms")
+# From the best to the worst, as decalgl.report.stability gives them; a technique that says what is wrong is better than
+# one that does not.
+VERDICTS = (
+    "exact",
+    "within tolerance",
+    "degrades gracefully",
+    "warns",
+    "refuses with an error",
+    "fails",
+)
 SPREADS = 4.0  # of the noisier run, from which on a difference counts
 LEAST_TIME = 0.05  # as a share: less is never a difference
 UNKNOWN_SPREAD = 0.05  # of times of one round, and the least of those of two or three
 FEW_RUNS = 3
 LEAST_BYTES = 0.01
-# Words of a record that follow from others.
-NOT_SHOWN = ("picture", "source", "like", "sweep", "step", "verdict", "warning", "error", "refused")
+LEAST_ERROR, LEAST_ERROR_SHARE = 0.001, 0.02
+ERRORS = ("_rms", "_p99", "_max", "leak", "rough", "far")  # ends of names
+# Words of a record that were found out, and so do not tell it from others; and those that follow from others.
+FOUND = ("picture", "verdict", "warning", "error", "refused")
+NOT_SHOWN = (*FOUND, "source", "like", "sweep", "step")
 
 
 @dataclass(frozen=True)
@@ -74,12 +87,16 @@ class Drift:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Of two runs: what changed beyond the noise, how many numbers both have, and the drift of their machines."""
+    """Of two runs: what changed beyond the noise, how many numbers both have, and the drift of their machines.
+
+    lost: what the later run refuses, judges worse or has not, of the parts that both have.
+    """
 
     changes: list[Change]
     compared: int
     drift: float
     notes: list[str]
+    lost: list[str]
 
     @property
     def worse(self) -> list[Change]:
@@ -115,7 +132,25 @@ def compare(before: Results, after: Results) -> Comparison:
     if not changes:
         raise InputError("The two runs have no time and no size in common. Compare runs of the same suites.")
     whole = drifts.get((), Drift())
-    return Comparison(changes, len(changes), whole.share, list(_notes(before, after)))
+    lost = [*_worse_outcomes(pairs), *_gone(earlier, after["records"])]
+    return Comparison(changes, len(changes), whole.share, list(_notes(before, after)), lost)
+
+
+def _worse_outcomes(pairs: list[Pair]) -> Iterator[str]:
+    for old, new in pairs:
+        for word in ("refused", "error"):
+            if word in new and word not in old:
+                yield f"{_where(new)}: {new[word]}"
+        verdicts = [VERDICTS.index(one["verdict"]) for one in (old, new) if one.get("verdict") in VERDICTS]
+        if len(verdicts) == 2 and verdicts[1] > verdicts[0]:
+            yield f"{_where(new)}: {old['verdict']}, then {new['verdict']}."
+
+
+def _gone(earlier: Mapping[tuple[str, ...], Record], records: list[Record]) -> Iterator[str]:
+    there, parts = {_key(record) for record in records}, {record.get("part") for record in records}
+    for key, record in earlier.items():
+        if key not in there and record.get("part") in parts:
+            yield f"{_where(record)}: is no longer measured."
 
 
 def _drifts(pairs: list[Pair]) -> dict[tuple[str, ...], Drift]:
@@ -161,7 +196,7 @@ def summary(found: Comparison) -> str:
         f"{len(found.worse)} worse, {len(found.better)} better, of {found.compared} times and sizes.",
         f"The machine took {found.drift:.2f} times as long for what no change touches.",
     ]
-    return "\n".join([*lines, *found.notes])
+    return "\n".join([*lines, *found.lost, *found.notes])
 
 
 def _changes(old: Record, new: Record, drift: Drift, few_runs: bool) -> Iterator[Change]:
@@ -174,6 +209,9 @@ def _changes(old: Record, new: Record, drift: Drift, few_runs: bool) -> Iterator
             noise = SPREADS * (max(own, UNKNOWN_SPREAD if few_runs else 0.0) + drift.spread)
             limit = 1.0 + max(LEAST_TIME, noise)
             yield Change(_where(new), name, old[name], new[name], share / drift.share, limit)
+        elif name.endswith(ERRORS):
+            if abs(new[name] - old[name]) >= LEAST_ERROR:
+                yield Change(_where(new), name, old[name], new[name], share, 1.0 + LEAST_ERROR_SHARE)
         elif "bytes" in name:
             yield Change(_where(new), name, old[name], new[name], share, 1.0 + LEAST_BYTES)
 
@@ -190,8 +228,9 @@ def _measured(old: Record, new: Record, name: str) -> bool:
 
 
 def _key(record: Record) -> tuple[str, ...]:
-    """What tells a record from the others of its run: its words."""
-    return tuple(sorted(f"{name}={value}" for name, value in record.items() if isinstance(value, str)))
+    """What tells a record from the others of its run: its words, but for those that were found out."""
+    words = {name: value for name, value in record.items() if isinstance(value, str) and name not in FOUND}
+    return tuple(sorted(f"{name}={value}" for name, value in words.items()))
 
 
 def _notes(before: Results, after: Results) -> Iterator[str]:

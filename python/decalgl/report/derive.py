@@ -123,6 +123,14 @@ def without_holes(features: dg.FeatureTable) -> dg.FeatureTable:
     return table("polygons", rings)
 
 
+def holes(features: dg.FeatureTable) -> dg.FeatureTable:
+    """A polygon of each ring but the first of its feature."""
+    first = set(features.feature_offsets[:-1].tolist())
+    ends = zip(features.part_offsets[:-1].tolist(), features.part_offsets[1:].tolist(), strict=True)
+    rings = [[features.coords[begin:end]] for ring, (begin, end) in enumerate(ends) if ring not in first]
+    return table("polygons", rings)
+
+
 def repeated(features: dg.FeatureTable, steps: FloatArray) -> dg.FeatureTable:
     """The features once for each of the steps (n, 2) in metres."""
     count = len(steps)

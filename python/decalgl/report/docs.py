@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ..bench import comparison, folders
 from ..bench.docs import filled
 from ..errors import InputError
-from . import choices, error_over_time, factors, needless, scaling, scenes, sizes, stability
+from . import choices, error_over_time, factors, needless, odd_inputs, scaling, scenes, sizes, stability
 from .command import as_text
 from .extremes import EXTREMES
 from .part import number
@@ -116,6 +116,7 @@ BLOCKS: dict[str, Callable[[Results], str]] = {
     "choices": _choices,
     "exponents": _table("scaling", scaling.exponents),
     "held": _table("needless", needless.weighed),
+    "odd": _table("odd_inputs", odd_inputs.verdicts),
     "signs": _table("factors", factors.signs),
     "sizes": _table("sizes", sizes.table),
     "times": _times,

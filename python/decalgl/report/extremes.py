@@ -110,7 +110,7 @@ def _table(kind: Any, features: Rings) -> FeatureTable:
 # Ground and cameras
 
 
-def _ground(half: float, relief: float, x: float = 0.0, y: float = 0.0) -> Terrain:
+def hills(half: float, relief: float, x: float = 0.0, y: float = 0.0) -> Terrain:
     """33 x 33 samples around (x, y), whose middle one is 0 m high."""
     samples = 33
     v, u = np.mgrid[-1.0 : 1.0 : samples * 1j, -1.0 : 1.0 : samples * 1j]
@@ -119,7 +119,7 @@ def _ground(half: float, relief: float, x: float = 0.0, y: float = 0.0) -> Terra
     return Terrain((0.4 * relief * heights).astype(np.float32), x - half, y + half, step, step)
 
 
-def _seen(
+def seen_from(
     height: float,
     distance: float,
     elevation: float = 45.0,
@@ -160,7 +160,8 @@ def _walks(reach: float, step: float, count: int, x: float = 0.0, y: float = 0.0
     return found
 
 
-def _circle(radius: float, corners: int, turn: float = 0.0) -> FloatArray:
+def circle(radius: float, corners: int, turn: float = 0.0) -> FloatArray:
+    """A ring of so many corners around (0, 0), (corners, 2)."""
     angle = turn + np.linspace(0.0, 2.0 * np.pi, corners, endpoint=False)
     return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
@@ -170,15 +171,15 @@ def _circle(radius: float, corners: int, turn: float = 0.0) -> FloatArray:
 
 def _coordinates(value: float) -> Case:
     x, y = value, -0.93 * value
-    camera, pixel = _seen(90.0, 150.0, target=(x, y, 0.0))
-    return Case(_ground(100.0, 8.0, x, y), camera, pixel, _cells(40.0, 5, x, y), _walks(30.0, 5.0, 6, x, y))
+    camera, pixel = seen_from(90.0, 150.0, target=(x, y, 0.0))
+    return Case(hills(100.0, 8.0, x, y), camera, pixel, _cells(40.0, 5, x, y), _walks(30.0, 5.0, 6, x, y))
 
 
 def _feature_size(value: float) -> Case:
     half = 500_000.0
     size = 2.0 * half / value
-    camera, pixel = _seen(1.5 * size, 4.0 * size, 50.0)
-    return Case(_ground(half, 2000.0), camera, pixel, _cells(0.6 * size, 5), _walks(0.4 * size, 0.07 * size, 5),
+    camera, pixel = seen_from(1.5 * size, 4.0 * size, 50.0)
+    return Case(hills(half, 2000.0), camera, pixel, _cells(0.6 * size, 5), _walks(0.4 * size, 0.07 * size, 5),
                 0.03 * size)  # fmt: skip
 
 
@@ -189,13 +190,13 @@ def _vees(value: float) -> Rings:
 
 
 def _angle(value: float) -> Case:
-    camera, pixel = _seen(110.0, 160.0, 60.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, lines=_vees(value), width=7.0)
+    camera, pixel = seen_from(110.0, 160.0, 60.0)
+    return Case(hills(100.0, 8.0), camera, pixel, lines=_vees(value), width=7.0)
 
 
 def _miter(value: float) -> Case:
-    camera, pixel = _seen(110.0, 160.0, 60.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, lines=_vees(value), width=7.0,
+    camera, pixel = seen_from(110.0, 160.0, 60.0)
+    return Case(hills(100.0, 8.0), camera, pixel, lines=_vees(value), width=7.0,
                 looks={"corner": "miter", "miter_limit": 5.0})  # fmt: skip
 
 
@@ -213,25 +214,25 @@ def _width_ratio(value: float) -> Case:
     generator = np.random.default_rng(3)
     shaken = 0.2 * width / value * generator.uniform(-1.0, 1.0, (len(t), 2))
     path = np.stack([120.0 * t - 60.0, 25.0 * np.sin(9.0 * t)], axis=1) + np.minimum(shaken, 3.0)
-    camera, pixel = _seen(90.0, 150.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, lines=[[path]], width=width)
+    camera, pixel = seen_from(90.0, 150.0)
+    return Case(hills(100.0, 8.0), camera, pixel, lines=[[path]], width=width)
 
 
 def _line_width(value: float) -> Case:
-    camera, pixel = _seen(90.0, 150.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, lines=_walks(30.0, 5.0, 6), width=value * pixel)
+    camera, pixel = seen_from(90.0, 150.0)
+    return Case(hills(100.0, 8.0), camera, pixel, lines=_walks(30.0, 5.0, 6), width=value * pixel)
 
 
 def _distance(value: float) -> Case:
     height = min(0.6 * value, 400.0)
-    camera, pixel = _seen(height, value, 50.0)
-    return Case(_ground(1000.0, 60.0), camera, pixel, _cells(0.6 * height, 6), _walks(0.4 * height, 0.06 * height, 5),
+    camera, pixel = seen_from(height, value, 50.0)
+    return Case(hills(1000.0, 60.0), camera, pixel, _cells(0.6 * height, 6), _walks(0.4 * height, 0.06 * height, 5),
                 0.025 * height)  # fmt: skip
 
 
 def _tilt(value: float) -> Case:
-    camera, pixel = _seen(60.0, 300.0, value)
-    return Case(_ground(5000.0, 0.0), camera, pixel, _cells(400.0, 20), _walks(200.0, 20.0, 12), 4.0)
+    camera, pixel = seen_from(60.0, 300.0, value)
+    return Case(hills(5000.0, 0.0), camera, pixel, _cells(400.0, 20), _walks(200.0, 20.0, 12), 4.0)
 
 
 def _slope(value: float) -> Case:
@@ -239,7 +240,7 @@ def _slope(value: float) -> Case:
     x = np.arange(-10, 11) * 5.0
     heights = np.tile(steep * x, (21, 1)).astype(np.float32)
     height = 60.0 * math.hypot(1.0, steep)
-    camera, pixel = _seen(height, 2.0 * height, 35.0, azimuth=250.0)
+    camera, pixel = seen_from(height, 2.0 * height, 35.0, azimuth=250.0)
     return Case(
         Terrain(heights, -50.0, 50.0, 5.0, 5.0), camera, pixel, _cells(30.0, 5), _walks(25.0, 4.0, 5), 1.5
     )
@@ -247,9 +248,9 @@ def _slope(value: float) -> Case:
 
 def _exaggeration(value: float) -> Case:
     height = 90.0 + 12.0 * value
-    camera, pixel = _seen(height, 2.0 * height, 40.0)
+    camera, pixel = seen_from(height, 2.0 * height, 40.0)
     return Case(
-        _ground(100.0, 8.0), camera, pixel, _cells(60.0, 5), _walks(50.0, 6.0, 6), 2.0, exaggeration=value
+        hills(100.0, 8.0), camera, pixel, _cells(60.0, 5), _walks(50.0, 6.0, 6), 2.0, exaggeration=value
     )
 
 
@@ -258,29 +259,29 @@ def _overlap(value: float) -> Case:
     generator = np.random.default_rng(13)
     places = generator.uniform(-6.0, 6.0, (count, 2))
     turns = generator.uniform(0.0, 6.0, count)
-    triangles: Rings = [[_circle(22.0, 3, turn) + place] for turn, place in zip(turns, places, strict=True)]
+    triangles: Rings = [[circle(22.0, 3, turn) + place] for turn, place in zip(turns, places, strict=True)]
     ends = generator.uniform(-40.0, 40.0, (count, 2))
     strokes: Rings = [[np.stack([-end, end])] for end in ends]
-    camera, pixel = _seen(90.0, 150.0, 70.0)
+    camera, pixel = seen_from(90.0, 150.0, 70.0)
     return Case(
-        _ground(100.0, 8.0), camera, pixel, triangles, strokes, 3.0, alpha=max(min(0.5, 4.0 / count), 0.02)
+        hills(100.0, 8.0), camera, pixel, triangles, strokes, 3.0, alpha=max(min(0.5, 4.0 / count), 0.02)
     )
 
 
 def _nesting(value: float) -> Case:
     depth = round(value)
-    rings = [_circle(42.0 * (depth - i) / depth, 24, 0.1 * i) for i in range(depth)]
-    camera, pixel = _seen(90.0, 150.0, 70.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, [rings])
+    rings = [circle(42.0 * (depth - i) / depth, 24, 0.1 * i) for i in range(depth)]
+    camera, pixel = seen_from(90.0, 150.0, 70.0)
+    return Case(hills(100.0, 8.0), camera, pixel, [rings])
 
 
 def _coincident(value: float) -> Case:
     height = 30.0 * value
-    camera, pixel = _seen(height, 2.0 * height, 70.0)
+    camera, pixel = seen_from(height, 2.0 * height, 70.0)
     left = np.array([(-60.0, -50.0), (0.0, -50.0), (0.3 * value, 0.0), (0.0, 50.0), (-60.0, 50.0)])
     right = np.array([(60.0, -50.0), (60.0, 50.0), (value, 50.0), (1.3 * value, 0.0), (value, -50.0)])
     lines: Rings = [[np.array([(-60.0, y), (60.0, y + value)])] for y in (0.0, 4.0 * value)]
-    return Case(_ground(100.0, 0.0), camera, pixel, [[left], [right]], lines, 2.0 * value)
+    return Case(hills(100.0, 0.0), camera, pixel, [[left], [right]], lines, 2.0 * value)
 
 
 def _sliver(value: float) -> Case:
@@ -289,9 +290,9 @@ def _sliver(value: float) -> Case:
         along, aside = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
         start = -0.3 * value * along
         features.append([np.stack([start + 6.0 * aside, start - 6.0 * aside, 0.7 * value * along])])
-    camera, pixel = _seen(90.0, 150.0, 60.0)
+    camera, pixel = seen_from(90.0, 150.0, 60.0)
     lines: Rings = [[np.array([(-0.3 * value, -0.2 * value + 5.0), (0.6 * value, 0.4 * value + 5.0)])]]
-    return Case(_ground(100.0, 8.0), camera, pixel, features, lines, 3.0)
+    return Case(hills(100.0, 8.0), camera, pixel, features, lines, 3.0)
 
 
 def _vertices(value: float) -> Case:
@@ -302,10 +303,10 @@ def _vertices(value: float) -> Case:
         + 15.0 * generator.random((count, 1)) * min(1.0, 300.0 / count)
         + 5.0 * np.sin(np.linspace(0.0, 40.0 * np.pi, count))[:, None]
     )
-    ring = radius * _circle(1.0, count)
-    camera, pixel = _seen(100.0, 150.0, 65.0)
+    ring = radius * circle(1.0, count)
+    camera, pixel = seen_from(100.0, 150.0, 65.0)
     return Case(
-        _ground(100.0, 8.0), camera, pixel, [[ring]], [[np.concatenate([ring * 1.2, ring[:1] * 1.2])]], 1.0
+        hills(100.0, 8.0), camera, pixel, [[ring]], [[np.concatenate([ring * 1.2, ring[:1] * 1.2])]], 1.0
     )
 
 
@@ -313,9 +314,9 @@ def _holes(value: float) -> Case:
     side = max(1, round(math.sqrt(value)))
     step = 80.0 / side
     places = (np.arange(side) + 0.5) * step - 40.0
-    holes = [_circle(0.35 * step, 5, 0.2) + np.array([x, y]) for x in places for y in places]
-    camera, pixel = _seen(100.0, 150.0, 70.0)
-    return Case(_ground(100.0, 8.0), camera, pixel, [[_circle(60.0, 8), *holes]])
+    holes = [circle(0.35 * step, 5, 0.2) + np.array([x, y]) for x in places for y in places]
+    camera, pixel = seen_from(100.0, 150.0, 70.0)
+    return Case(hills(100.0, 8.0), camera, pixel, [[circle(60.0, 8), *holes]])
 
 
 def _powers(first: int, last: int, step: int = 1) -> tuple[float, ...]:

@@ -13,7 +13,7 @@ import decalgl as dg
 
 from ..bench.measure import LAYER_PASSES, draw, drawing, interleaved, timed
 from ..errors import DecalError
-from . import plots
+from . import factor_shares, plots
 from .factor_list import COLUMNS, FACTORS, REASONS, Maps
 from .part import Figure, Table
 
@@ -28,11 +28,11 @@ TITLE = "Influence factors"
 ABOUT = (
     "What grows with what, as in chapter 5 of Zechmeister 2020: + grows, – shrinks, ~ stays within the noise, empty:"
     " nothing changes. Published are the thesis's structures, built anew here; ours are the grid and the tiles. The"
-    " sign of a time counts from a change of a quarter, four times the spread, and 50 ms of preparing or 1 ms of"
+    " sign of a time counts from a change of a quarter, four times the spread, and 5 ms of preparing or 1 ms of"
     " drawing on, that of memory from 5 % on."
 )
 NOISE, SPREADS = 0.25, 4.0
-LEAST_MS = {"update_ms": 50.0, "render_ms": 1.0}
+LEAST_MS = {"update_ms": 5.0, "render_ms": 1.0}
 MEMORY_NOTHING, MEMORY_LITTLE = 0.002, 0.05
 
 
@@ -47,7 +47,8 @@ def rows(context: Context) -> list[Row]:
             context.say(f"{factor.name}, {factor.decals}: {way}")
             values = factor.few if context.size != "full" else factor.values
             found += _measured(context, factor, way, {str(value): make(maps, value) for value in values})
-    return found
+    context.say("shares")
+    return [*found, *factor_shares.rows(context, maps)]
 
 
 def _measured(context: Context, factor: Factor, way: str, cases: dict[str, Case]) -> list[Row]:
@@ -109,8 +110,8 @@ def _floor(renderer: dg.Renderer, value: str) -> Measure:
 
 
 def figures(rows: Sequence[Row]) -> list[Figure]:
-    """Table 5.4, the disagreements with their reasons, and a plot for each factor."""
-    every, rows = rows, [row for row in rows if "refused" not in row]
+    """Table 5.4, the disagreements with their reasons, a plot for each factor, and shares."""
+    every, rows = rows, [row for row in rows if "factor" in row and "refused" not in row]
     caption = "M, U, R: memory, preparing (the thesis's update), drawing, as the factor grows."
     found = [Figure("Table 5.4: factors and their signs", caption, table=signs(rows)), _reasons_figure(rows)]
     for factor in FACTORS:
@@ -124,7 +125,7 @@ def figures(rows: Sequence[Row]) -> list[Figure]:
         ]
         table = Table(("factor", "decals", "way", "value", "error"), cells)
         found.append(Figure("Refused", "Values that a way does not draw.", table=table))
-    return found
+    return [*found, *factor_shares.figures(every)]
 
 
 def sign(rows: Sequence[Row], column: str) -> str:
@@ -166,7 +167,7 @@ def _of(rows: Sequence[Row], factor: Factor, way: str) -> list[Row]:
 def signs(rows: Sequence[Row]) -> Table:
     """Table 5.4 with our signs beside the thesis's."""
     cells = []
-    rows = [row for row in rows if "refused" not in row]
+    rows = [row for row in rows if "factor" in row and "refused" not in row]
     for factor in FACTORS:
         ours = {way: own for way in factor.ways if (own := _of(rows, factor, way))}
         if not ours:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import error_over_time, factors, needless, papers, scaling, scenes, sizes, stability
+from . import error_over_time, factors, needless, odd_inputs, papers, scaling, scenes, sizes, stability
 
 if TYPE_CHECKING:
     from .part import Part
@@ -17,5 +17,6 @@ PARTS: dict[str, Part] = {
     "papers": papers,
     "scaling": scaling,
     "stability": stability,
+    "odd_inputs": odd_inputs,
     "needless": needless,
 }

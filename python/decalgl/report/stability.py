@@ -17,6 +17,7 @@ import numpy as np
 import decalgl as dg
 from decalgl import reference as ref
 
+from ..bench.comparison import VERDICTS
 from . import plots
 from .extremes import EXTREMES, SIZE
 from .part import Figure, Table
@@ -37,16 +38,7 @@ ROUNDING, NEAR = 0.02, 1.0
 SLACK = 2.5 / 255.0
 # Shares of the picture's pixels: how many may be off by more than a verdict allows.
 MOST_ROUGH, MOST_FAR = 0.001, 0.02
-EXACT, TOLERABLE, GRACEFUL, WARNS, REFUSES, FAILS = (
-    "exact",
-    "within tolerance",
-    "degrades gracefully",
-    "warns",
-    "refuses with an error",
-    "fails",
-)
-# From the best to the worst; a technique that says what is wrong is better than one that does not.
-VERDICTS = (EXACT, TOLERABLE, GRACEFUL, WARNS, REFUSES, FAILS)
+EXACT, TOLERABLE, GRACEFUL, WARNS, REFUSES, FAILS = VERDICTS
 SHORT = {
     EXACT: "exact",
     TOLERABLE: "within",
