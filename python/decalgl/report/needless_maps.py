@@ -47,8 +47,9 @@ def of_map(drawn: Map) -> Iterator[Row]:
         if not (way.fills or drawn.has_lines):
             continue
         words = {"map": drawn.name, "scene": drawn.name, "technique": name}
-        scene = drawn.scene(way.technique if way.fills else "static", way.technique, way.pixels)
+        others = "auto" if way.pixels else "static"  # outlines are as wide as on the screen, too
         try:
+            scene = drawn.scene(way.technique if way.fills else others, way.technique, way.pixels)
             frame = scene.render(camera, needless.SIZE, antialias="none", **way.options)
         except DecalError as error:
             yield {**words, "refused": str(error)}
