@@ -204,7 +204,7 @@ def test_the_front_has_what_nothing_beats() -> None:
 
 @pytest.mark.parametrize(
     ("first", "last", "spread", "expected"),
-    [(100.0, 200.0, 0.0, "+"), (200.0, 100.0, 0.0, "–"), (10.0, 20.0, 0.0, "~"), (100.0, 170.0, 0.2, "~")],
+    [(100.0, 200.0, 0.0, "+"), (200.0, 100.0, 0.0, "–"), (1.0, 4.0, 0.0, "~"), (100.0, 170.0, 0.2, "~")],
 )
 def test_signs_leave_noise_out(first: float, last: float, spread: float, expected: str) -> None:
     rows = [{"rank": i, "update_ms": ms, "update_ms_spread": spread} for i, ms in enumerate((first, last))]

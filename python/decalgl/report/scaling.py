@@ -31,7 +31,7 @@ ABOUT = (
 )
 GROUND_PASSES = ("upload", "terrain", "compose", "readback")
 LINE = 100  # segments
-STEP = 40.0  # metres
+STEP = 10.0  # metres: 3e7 segments 6 m wide cover the ground four and a half times
 HALF = 10_000.0
 MOST_REPEATED = 5e6  # of a count: what is larger is drawn in one round
 UNKNOWN_SPREAD = 0.1  # of times of one round, as a share

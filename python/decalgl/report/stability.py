@@ -163,9 +163,9 @@ def driven(extreme: Extreme, values: Iterable[float]) -> list[Row]:
 def judged(way: Way, case: Case) -> Row:
     """How far the picture of a case is from the reference: `rough`, `far`, `warning` and `verdict`, or an `error`."""
     try:
-        scene = way.scene(case)
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", dg.DecalWarning)
+            scene = way.scene(case)
             frame = scene.render(case.camera, SIZE, antialias="none", background=None, **way.options)
     except dg.DecalError as error:
         return {"verdict": REFUSES, "error": str(error)}
