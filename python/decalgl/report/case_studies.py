@@ -27,7 +27,7 @@ import numpy as np
 import decalgl as dg
 
 from ..bench import fetch, folders
-from ..errors import FileError
+from ..errors import DecalError, FileError
 from ..road_styles import CLASSES, COLORS, road_classes
 from . import derive
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     import geopandas as gpd
 
-    from .part import Size, Step
+    from .part import Context, Row, Size, Step
 
 # Samples along a side of what is cut out of the terrain model, and of the town, how many copies along a side.
 WINDOWS: dict[Step, int] = {"tiny": 60, "offline": 300, "small": 800, "medium": 1800, "large": 3500}
@@ -354,3 +354,17 @@ SCENES: dict[Size, tuple[str, ...]] = {
     "quick": ("floods", "rural"),
     "full": tuple(CASE_STUDIES),
 }
+
+
+def rows_of_maps(context: Context, part: str, measure: Callable[[Map], list[Row]]) -> list[Row]:
+    """What a part measures of each map of the report, kept map by map; one whose data cannot be had is a row too."""
+    found: list[Row] = []
+    for name in SCENES[context.size]:
+        try:
+            drawn = build(name, context.step)
+        except DecalError as error:
+            found.append({"scene": name, "refused": str(error)})
+            continue
+        context.say(f"{part}: {name}")
+        found += context.kept(f"{part}_{name}", functools.partial(measure, drawn))
+    return found

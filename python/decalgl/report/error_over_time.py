@@ -12,7 +12,7 @@ from ..bench.measure import drawing, floor, interleaved, timed
 from ..errors import DecalError
 from . import choices, plots, views
 from .accuracy import Judge
-from .case_studies import SCENES, build
+from .case_studies import rows_of_maps
 from .part import Figure, Table, byte_count, number
 from .settings import settings
 
@@ -40,15 +40,7 @@ ABOUT = (
 
 def rows(context: Context) -> list[Row]:
     """Draws every scene by every setting; one that does not draw it is a row with what it says."""
-    found: list[Row] = []
-    for name in SCENES[context.size]:
-        try:
-            drawn = build(name, context.step)
-        except DecalError as error:
-            found.append({"scene": name, "refused": str(error)})
-            continue
-        found += context.kept(f"error_over_time_{name}", functools.partial(_of_scene, context, drawn))
-    return found
+    return rows_of_maps(context, "error_over_time", functools.partial(_of_scene, context))
 
 
 def _of_scene(context: Context, drawn: Map) -> list[Row]:

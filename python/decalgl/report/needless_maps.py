@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import DecalError
 from . import needless, views
-from .case_studies import SCENES, Map, build
+from .case_studies import Map, rows_of_maps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,16 +26,8 @@ VIEW_SHARE = {"loops": 1.0}
 
 def rows(context: Context) -> list[Row]:
     """A row for each map and technique."""
-    found: list[Row] = []
-    for name in SCENES[context.size]:
-        try:
-            drawn = build(name, context.step)
-        except DecalError as error:
-            found.append({"map": name, "scene": name, "refused": str(error)})
-            continue
-        context.say(f"needless: {name}")
-        found += context.kept(f"needless_{name}", functools.partial(list, of_map(drawn)))
-    return found
+    found = rows_of_maps(context, "needless", lambda drawn: list(of_map(drawn)))
+    return [{**row, "map": row["scene"]} for row in found]
 
 
 def of_map(drawn: Map) -> Iterator[Row]:
@@ -46,7 +37,7 @@ def of_map(drawn: Map) -> Iterator[Row]:
     for name, way in needless.WAYS.items():
         if not (way.fills or drawn.has_lines):
             continue
-        words = {"map": drawn.name, "scene": drawn.name, "technique": name}
+        words = {"scene": drawn.name, "technique": name}
         others = "auto" if way.pixels else "static"  # outlines are as wide as on the screen, too
         try:
             scene = drawn.scene(way.technique if way.fills else others, way.technique, way.pixels)
