@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +16,11 @@ from small_scenes import OBLIQUE, SIZE, hilly_scene
 
 BOTH = pytest.mark.parametrize("antialias", ["none", "coverage"])
 INDEXES = pytest.mark.parametrize("index", ["grid", "bvh"])
+EVERY_INDEX = pytest.mark.parametrize("index", ["grid", "bvh", "thoeny"])
+# Coverage draws what trees of either kind are asked for point by point, so one of them is enough.
+EVERY_WAY = pytest.mark.parametrize(
+    ("index", "antialias"), [*itertools.product(["grid", "bvh"], ["none", "coverage"]), ("thoeny", "none")]
+)
 KINDS = ["a", "b", "c"]
 
 
@@ -37,9 +43,11 @@ def some_ways(count: int = 30) -> geopandas.GeoDataFrame:
     )
 
 
-def scene_of(areas: dict[str, Any], ways: dict[str, Any], widest: float = 0.0) -> dg.Scene:
+def scene_of(
+    areas: dict[str, Any], ways: dict[str, Any], widest: float = 0.0, south: float = 1000.0
+) -> dg.Scene:
     """A hill with areas and ways, as the keywords say."""
-    scene = hilly_scene()
+    scene = hilly_scene(south)
     scene.add_polygons(some_areas(), **{"name": "areas", **areas})
     layer = scene.add_lines(some_ways(), **{"name": "ways", "width": 2.0, "width_units": "m", **ways})
     assert layer.stroke is not None
@@ -58,6 +66,10 @@ def assert_same(one: dg.Frame, other: dg.Frame) -> None:
     np.testing.assert_array_equal(one.image, other.image)
     np.testing.assert_array_equal(one.ids, other.ids)
     np.testing.assert_array_equal(one.layers, other.layers)
+
+
+# How far two pictures by coverage of one map may be apart that come from indexes made otherwise: each is good to 0.02.
+TWO_COVERAGES = 2 * 0.02 * 255
 
 
 def picks(frame: dg.Frame) -> list[list[tuple[int, int]]]:

@@ -11,7 +11,7 @@ import pytest
 from shapely import LineString, Polygon, affinity, box
 
 import decalgl as dg
-from changed_scenes import BOTH, INDEXES, picks, prepared, some_areas, some_ways
+from changed_scenes import BOTH, EVERY_WAY, INDEXES, picks, prepared, some_areas, some_ways
 from small_scenes import MAP, OBLIQUE, SIZE, hilly_scene
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ NEW_WAYS = [LineString([(0, 90), (100, 80)]), LineString([(50, 0), (55, 60), (90
 def scene_of(
     areas: geopandas.GeoDataFrame, ways: geopandas.GeoDataFrame, widest: float = 0.0, **style: Any
 ) -> dg.Scene:
-    scene = hilly_scene()
+    scene = hilly_scene(south=1000.0)
     scene.add_polygons(areas, name="areas", **(style or {"color": (0.8, 0.7, 0.5, 0.6)}))
     layer = scene.add_lines(ways, color="navy", width=1.5, width_units="m", name="ways")
     assert layer.stroke is not None
@@ -44,8 +44,7 @@ def assert_close(one: dg.Frame, other: dg.Frame, rows: dict[int, np.ndarray[Any,
     assert np.abs(one.image.astype(int) - other.image).max() <= 1
 
 
-@INDEXES
-@BOTH
+@EVERY_WAY
 @pytest.mark.parametrize("widest", [0.0, 6.0])
 def test_an_edited_picture_is_that_of_the_edited_data(antialias: str, widest: float, index: str) -> None:
     areas, ways = some_areas(), some_ways()

@@ -10,7 +10,7 @@ import pytest
 from shapely import LineString, Point, box
 
 import decalgl as dg
-from changed_scenes import INDEXES, PLAIN, assert_same, picks, prepared, scene_of
+from changed_scenes import EVERY_INDEX, INDEXES, PLAIN, TWO_COVERAGES, assert_same, picks, prepared, scene_of
 from small_scenes import BLUE, GREEN, MAP, OBLIQUE, RED, SIZE, count_color, flat_scene, pixel
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ def test_colours_of_a_map_from_above() -> None:
     assert frame.pick(20, 79)[0].row == 0
 
 
-@INDEXES
+@EVERY_INDEX
 def test_a_session_is_what_its_steps_are(index: str) -> None:
     """Navigation, lens, pick, restyle and edit in a loop: at its end, the map is as if prepared so."""
     renderer = prepared(scene_of({"column": "kind"}, {"color": "navy"}), "coverage", index=index)
@@ -179,13 +179,15 @@ def test_a_session_is_what_its_steps_are(index: str) -> None:
     renderer.restyle("areas", visible=False, where=np.arange(40 + len(added)) >= 40)
     renderer.update(OBLIQUE)
     kept = [row for row in range(40) if row not in marked]
-    ids = renderer.render().ids
+    renderer.restyle("areas", color="tan")
+    frame = renderer.render()
     expected = prepared(
-        scene_of({"color": ["tan" if row in kept else "none" for row in range(40)]}, {}),
+        scene_of({"color": ["tan" if row in kept else "none" for row in range(40)]}, {"color": "navy"}),
         "coverage",
         index=index,
-    )
-    np.testing.assert_array_equal(ids, expected.render().ids)
+    ).render()
+    np.testing.assert_array_equal(frame.ids, expected.ids)
+    assert np.abs(frame.image.astype(int) - expected.image).max() <= TWO_COVERAGES
 
 
 @INDEXES

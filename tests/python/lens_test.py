@@ -8,13 +8,12 @@ import numpy as np
 from shapely import Point, box
 
 import decalgl as dg
-from changed_scenes import BOTH, INDEXES, PLAIN, assert_same, picks, prepared, scene_of
+from changed_scenes import BOTH, EVERY_WAY, INDEXES, PLAIN, assert_same, picks, prepared, scene_of
 from judge import eroded
 from small_scenes import SIZE
 
 
-@INDEXES
-@BOTH
+@EVERY_WAY
 def test_a_lens_shows_other_layers_inside(antialias: str, index: str) -> None:
     scene = scene_of({"column": "kind"}, {"color": "navy"}, widest=5.0)
     renderer = prepared(scene, antialias, index=index)

@@ -66,6 +66,7 @@ MEAN_STEPS = {index: steps + 0.5 for index, steps in STEPS.items()}
 # Pixels that rounding explains, of all.
 ROUNDED = 0.01
 CROP, SAMPLES = (32, 24), 32
+LARGER = 3
 # Four samples in a pixel, to the right and down from its corner: rows 2, 0, 3, 1 from below, column by column.
 PLACES = np.array([(0.125, 0.375), (0.375, 0.875), (0.625, 0.125), (0.875, 0.625)])
 
@@ -81,7 +82,11 @@ def rows_of(*modes: str) -> pytest.MarkDecorator:
 
 @functools.cache
 def view_of(number: int) -> View:
-    return combined(ROWS[number])
+    """Larger where the grid draws areas: cell by cell, but from far away, and not from levels of detail."""
+    view, row = combined(ROWS[number]), ROWS[number]
+    if row["index"] == "grid" and row["antialias"] in ("coverage", "thoeny"):
+        return view._replace(size=(LARGER * view.size[0], LARGER * view.size[1]))
+    return view
 
 
 @functools.cache
@@ -200,6 +205,15 @@ def test_coverage_is_the_mean_over_the_pixel(number: int) -> None:
     assert found.rms <= bounds.rms, found
     assert found.p99 <= bounds.p99, found
     assert found.leak <= bounds.leak, found
+
+
+@rows_of("coverage", "thoeny")
+def test_near_pictures_of_the_grid_are_drawn_cell_by_cell(number: int) -> None:
+    row = ROWS[number]
+    if row["index"] == "grid":
+        fresh = dg.Renderer(terrain_error=0.0, coverage=row["antialias"].replace("coverage", "exact"))
+        variants = judge.draw(fresh, view_of(number), "coverage").stats.variants
+        assert any("LEVELS" in variant for variant in variants) == (row["camera"] == "far")
 
 
 @rows_of("fxaa")

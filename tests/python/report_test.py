@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from decalgl.bench import comparison
 from decalgl.bench.docs import marked
 from decalgl.errors import InputError
 from decalgl.report import (
+    accuracy,
     case_studies,
     choices,
     command,
@@ -30,7 +32,6 @@ from decalgl.report import (
     plots,
     views,
 )
-from decalgl.report.accuracy import seen_part
 from decalgl.report.part import Figure, Table, byte_count, number
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -118,6 +119,26 @@ def test_every_point_leads_to_its_picture(report: Path) -> None:
         assert all((report / link).is_file() for link in links)
 
 
+def test_the_ground_s_level_of_detail_is_told_apart(report: Path) -> None:
+    rows = json.loads((report / "report.json").read_text())["records"]
+    own = [row for row in rows if "ground_rms" in row]
+    assert own
+    assert all(0.0 <= row["ground_rms"] < 0.1 and 0.0 <= row["ground_moved"] < 0.2 for row in own)
+    titles = [figure.title for figure in error_over_time.figures(own)]
+    assert "What the terrain's level of detail adds" in titles
+
+
+def test_ground_that_is_coarser_moves_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = case_studies.build("floods", "offline")
+    judge = accuracy.Judge(drawn, {"close": views.views(drawn)["close"]}, (160, 90), (32, 18))
+    fine = judge.judge_ground()["close"]
+    coarser = replace(accuracy.BY_DETAIL, renderer={"terrain_error": 8.0})
+    monkeypatch.setattr(accuracy, "BY_DETAIL", coarser)
+    coarse = judge.judge_ground()["close"]
+    assert 2.0 * fine["ground_moved"] < coarse["ground_moved"]
+    assert fine["ground_rms"] < coarse["ground_rms"]
+
+
 def test_rows_are_in_the_files(report: Path) -> None:
     results = json.loads((report / "report.json").read_text())
     assert {row["part"] for row in results["records"]} == set(parts.PARTS)
@@ -177,12 +198,18 @@ def test_the_reference_may_look_at_the_seen_part_alone() -> None:
     drawn = case_studies.build("floods", "tiny")
     scene, camera = drawn.scene(), views.views(drawn)["close"]
     size, crop = (64, 36), (20, 10, 36, 20)
-    part = seen_part(scene, camera, size, crop)
+    part = accuracy.seen_part(scene, camera, size, crop)
     assert sum(map(len, (layer.features for layer in part.layers))) < sum(
         len(layer.features) for layer in scene.layers
     )
     whole = reference.render_overlay(scene, camera, size, crop, samples=4)
     assert np.array_equal(reference.render_overlay(part, camera, size, crop, samples=4).rgba, whole.rgba)
+
+
+def test_floods_have_more_holes_than_areas() -> None:
+    areas = case_studies.build("floods", "offline").parts[0].data
+    holes = len(areas.part_offsets) - 1 - len(areas)
+    assert holes > len(areas) > 100
 
 
 def test_bands_share_the_ground_among_them() -> None:

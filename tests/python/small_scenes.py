@@ -30,10 +30,15 @@ def flat_scene(crs: Any = None, **options: Any) -> dg.Scene:
     return dg.Scene(dg.Terrain.flat(BOUNDS, crs=crs), **options)
 
 
-def hilly_scene(**options: Any) -> dg.Scene:
-    """A hill of 20 m on 100 m x 100 m, 5 m between samples."""
-    x = np.linspace(-1.0, 1.0, 21)
-    hill = 20.0 * np.exp(-4.0 * (x[None, :] ** 2 + x[:, None] ** 2))
+def hilly_scene(south: float = 0.0, **options: Any) -> dg.Scene:
+    """A hill of 20 m on 100 m x 100 m, 5 m between samples; south: metres of level ground before it.
+
+    With a kilometre of it, buckets are so large that pixels of a metre are drawn cell by cell, and not from levels of
+    detail.
+    """
+    x = np.arange(-10.0, 11.0) / 10.0
+    y = np.arange(10.0, -11.0 - south / 5.0, -1.0) / 10.0
+    hill = 20.0 * np.exp(-4.0 * (x[None, :] ** 2 + y[:, None] ** 2))
     return dg.Scene(dg.Terrain(hill.astype(np.float32), 0.0, 100.0, 5.0, 5.0), **options)
 
 

@@ -1,7 +1,8 @@
 """Every scene of styles against the reference: ids and colours at pixel centres, coverage over pixels' areas.
 
 Without anti-aliasing each style meets one index, in turns. With coverage the grid is judged over areas in every
-scene, the published index in half of them.
+scene, cell by cell (in larger pictures of those that reach as far as levels of detail do), the published index in half
+of them.
 """
 
 from __future__ import annotations
@@ -31,11 +32,14 @@ INDEXES = ("grid", "bvh")
 # Without anti-aliasing, and with coverage, each in one index, which take turns.
 EXACT = [(name, INDEXES[i % 2]) for i, name in enumerate(styles.STYLES)]
 FILTERED = [
-    (index, name)
+    (index, name, 1)
     for i, name in enumerate(styles.STYLES)
     for index in INDEXES
     if index == "grid" or index == INDEXES[1 - i % 2]
 ]
+# Parts of these are seen from as far as the grid takes what it shows from levels of detail.
+FAR = ("outlines_of_neighbours", "hatches_aslant", "casings")
+FILTERED += [("grid", name, 2) for name in FAR]
 # Metres that rounding moves a vertex or a position, in quanta: half of one, twice where a cell's border cuts an edge,
 # and as much again for what the shaders compute in 32 bits.
 QUANTA = 2.0
@@ -82,9 +86,14 @@ def test_without_antialiasing_a_pixel_is_the_composite_at_its_centre(name: str, 
     assert wrong <= 4e-3 * frame.ids.size
 
 
-@pytest.mark.parametrize(("index", "name"), FILTERED)
-def test_coverage_is_the_mean_over_the_pixel(index: str, name: str) -> None:
-    view = styles.build(name)
+def zoomed(view: View, zoom: int) -> View:
+    """In a picture of so many times as many pixels each way."""
+    return view._replace(size=(zoom * view.size[0], zoom * view.size[1]))
+
+
+@pytest.mark.parametrize(("index", "name", "zoom"), FILTERED)
+def test_coverage_is_the_mean_over_the_pixel(index: str, name: str, zoom: int) -> None:
+    view = zoomed(styles.build(name), zoom)
     x0, y0, x1, y1 = crop = judge.busiest_crop(judge.draw(renderer(index), view), CROP)
     surface = ref.sample_surface(view.scene, view.camera, view.size, crop, SAMPLES)
     expected = ref.render_overlay(view.scene, view.camera, view.size, crop, SAMPLES, surface=surface)
@@ -95,6 +104,15 @@ def test_coverage_is_the_mean_over_the_pixel(index: str, name: str) -> None:
     assert found.rms <= RMS, found
     assert found.p99 <= P99, found
     assert found.leak <= LEAK, found
+
+
+@pytest.mark.parametrize("name", styles.STYLES)
+def test_what_is_near_is_drawn_cell_by_cell(name: str) -> None:
+    for zoom in (1, 2) if name in FAR else (1,):
+        view = zoomed(styles.build(name), zoom)
+        variants = judge.draw(dg.Renderer(terrain_error=0.0), view, "coverage").stats.variants
+        assert any("CELLS" in variant for variant in variants)
+        assert any("LEVELS" in variant for variant in variants) == (name in FAR and zoom == 1)
 
 
 @pytest.mark.parametrize("kind", ["polygons", "lines"])

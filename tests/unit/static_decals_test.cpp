@@ -369,7 +369,7 @@ TEST_CASE("many large polygons over each other do not fill the memory", "[static
     CHECK(decals->query({1500, 2500}).size() == rings.size());
 }
 
-TEST_CASE("levels of detail keep the coverage of every kind of feature", "[static]") {
+TEST_CASE("levels of detail keep the coverage of fills and lines", "[static]") {
     RandomMap random(17);
     std::vector<Ring> rings, parts;
     for (int i = 0; i < 30; ++i)

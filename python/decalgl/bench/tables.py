@@ -279,7 +279,7 @@ def extremes(results: Results) -> str:
 def styles(results: Results) -> str:
     """Styles beside plain strokes and fills, and modes of anti-aliasing beside none."""
     drawn, modes = (
-        _by_view(_having(results, name, techniques=("static", "bvh"))) for name in ("style", "mode")
+        _by_view(_having(results, name, techniques=("static", "bvh", "thoeny"))) for name in ("style", "mode")
     )
     if not drawn:
         return "No figures yet."

@@ -1,7 +1,8 @@
 """How far a technique's picture is from the reference: in a crop, of colours and of coverage.
 
 A picture over black ground and one over white tell colour and coverage of the layers, premultiplied. All samples of the
-terrain are drawn, so that its levels of detail count for nothing. Pixels that see the sky are left out.
+terrain are drawn, so that its levels of detail count for nothing; what those do is told apart. Pixels that see the
+sky are left out.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from decalgl import reference
 
 from ..bench.measure import LAYER_PASSES
 from .case_studies import GROUND
+from .settings import Setting
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
     from ..reference.picture import Overlay
     from .case_studies import Map
     from .part import Row
-    from .settings import Setting
 
     FloatArray = NDArray[np.float64]
     Size = tuple[int, int]
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
 SAMPLES = 16  # of the reference, each way
 BLACK = dg.Relief(color="black", strength=0.0)
 WHITE = dg.Relief(color="white", strength=0.0)
+ALL_SAMPLES = {"terrain_error": 0.0}  # of the terrain
+BY_DETAIL = Setting("static", "coverage")
+MOVED = 0.05  # by how much a pixel differs for which the ground's level of detail counts
 
 
 @dataclass(frozen=True)
@@ -57,6 +61,7 @@ class Judge:
 
     def judge(self, setting: Setting) -> dict[str, Judged]:
         """The errors of a setting by view. Raises DecalError where it does not draw the map."""
+        setting = replace(setting, renderer={**ALL_SAMPLES, **setting.renderer})
         over_black, held = self._drawn(setting, BLACK)
         over_white, _ = self._drawn(setting, WHITE)
         found = {}
@@ -65,21 +70,33 @@ class Judge:
             found[view] = Judged({**errors, "layers_bytes": held[view]}, _over_ground(whole))
         return found
 
+    def judge_ground(self) -> dict[str, Row]:
+        """By view, how far the layers are from where they lie on all samples of the terrain, by its level of detail."""
+        detail, _ = self._drawn(BY_DETAIL, BLACK, None)
+        every, _ = self._drawn(replace(BY_DETAIL, renderer=ALL_SAMPLES), BLACK, None)
+        found: dict[str, Row] = {}
+        for view in self._cameras:
+            apart = np.abs(detail[view] - every[view])
+            moved = (apart.max(axis=-1) > MOVED).mean()
+            found[view] = {"ground_rms": float(np.sqrt((apart**2).mean())), "ground_moved": float(moved)}
+        return found
+
     def true_picture(self, view: str) -> NDArray[np.uint8]:
         """The crop as the reference draws it, lines in metres."""
         return _over_ground(self._true(view, pixels=False).rgba)
 
-    def _drawn(self, setting: Setting, relief: dg.Relief) -> tuple[dict[str, FloatArray], dict[str, int]]:
+    def _drawn(
+        self, setting: Setting, relief: dg.Relief, background: str | None = "sky"
+    ) -> tuple[dict[str, FloatArray], dict[str, int]]:
         """The pictures by view, and how many bytes the layers held, prepared data and GL objects."""
-        options: dict[str, Any] = {"terrain_error": 0.0, **setting.renderer}
-        key = repr(sorted(options.items(), key=str))
-        renderer = self._renderers.setdefault(key, dg.Renderer(self._size, **options))
+        key = repr(sorted(setting.renderer.items(), key=str))
+        renderer = self._renderers.setdefault(key, dg.Renderer(self._size, **setting.renderer))
         renderer.set_picture(self._size, setting.antialias)
         renderer.preprocess(self._scene(setting, relief))
         pictures, held = {}, {}
         for view, camera in self._cameras.items():
             renderer.update(camera)
-            frame = renderer.render()
+            frame = renderer.render(background=background)
             pictures[view] = frame.image[..., :3] / 255.0
             held[view] = sum(count for name, count in frame.stats.bytes.items() if name in LAYER_PASSES)
         return pictures, held

@@ -43,6 +43,7 @@ WINDOWS: dict[Step, int] = {"tiny": 60, "offline": 300, "small": 800, "medium": 
 COPIES: dict[Step, int] = {"tiny": 1, "offline": 1, "small": 2, "medium": 8, "large": 24}
 OFFLINE: tuple[Step, ...] = ("tiny", "offline")
 LINES = np.linspace(0.02, 0.98, 17)  # shares of the height range at which isolines run
+PUDDLE = 20  # vertices: areas with a shorter border are none that flood maps show
 GROUND = "#ece8df"
 PIXELS = 2.0  # the width of lines where it is one on the screen
 
@@ -173,11 +174,13 @@ def _isolines(step: Step) -> tuple[dg.Terrain, list[Part]]:
 
 
 def _floods(step: Step) -> tuple[dg.Terrain, list[Part]]:
-    """What lies lower than the ground around it, in three slices with a colour each."""
+    """What lies lower than the ground around it, in three slices with a colour each: more holes than areas."""
     ground = relief_of(step)
     low = derive.above_surroundings(ground, samples=10)
     edges = np.nanquantile(low.z, (0.0, 0.12, 0.24, 0.36))
     table, heights = derive.bands(low, itertools.pairwise(edges.tolist()))
+    is_shown = np.diff(table.part_offsets)[table.feature_offsets[:-1]] >= PUDDLE
+    table, heights = derive.chosen(table, is_shown), heights[is_shown]
     colors = np.array(["#d7302c", "#ef8a2c", "#f2d544"])[np.searchsorted(edges[1:], heights)]
     span = float(np.nanmax(ground.z) - np.nanmin(ground.z))
     lines = derive.contour_lines(ground, [float(np.nanmin(ground.z)) + span * share for share in LINES])

@@ -11,7 +11,7 @@ import decalgl as dg
 from ..bench.measure import drawing, floor, interleaved, timed
 from ..errors import DecalError
 from . import choices, plots, views
-from .accuracy import Judge
+from .accuracy import MOVED, Judge
 from .case_studies import rows_of_maps
 from .part import Figure, Table, byte_count, number
 from .settings import settings
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 TITLE = "Error against run time"
 TOGETHER = 6  # renderers that are held at once
 ERROR = "error at borders (rms, of 1)"  # of the axes
-PATIENCE = 1.0  # seconds: frames that take longer are drawn once
+PATIENCE = 0.3  # seconds: frames that take longer are drawn once
 ABOUT = (
     "Each point is a technique with a setting. Time is that of a whole frame, and of what it adds to"
     " terrain and composing, both divided by the floor, a pass that reads depth and writes a colour for every"
-    f" pixel; frames of more than {PATIENCE:g} second are drawn once. The error is the root mean square of the"
+    f" pixel; frames of more than {PATIENCE:g} s are drawn once. The error is the root mean square of the"
     " difference to the reference, of 1, over the pixels of a crop that"
     " a border passes (an edge's), over all pixels of the crop (the image's), and of the coverage alone. Dynamic lines"
     " are as wide as on the screen and are compared with a reference that draws them so; techniques that draw only"
@@ -75,6 +75,8 @@ def _of_scene(context: Context, drawn: Map) -> list[Row]:
             "view": view,
             "picture": true,
         }
+    for view, errors in judge.judge_ground().items():
+        by_key["terrain", "", view] = {"scene": drawn.name, "technique": "terrain", "view": view, **errors}
     context.say(f"{drawn.name}: times")
     for batch in _batches(drawable):
         _time(context, drawn, cameras, batch, by_key)
@@ -126,7 +128,7 @@ def _time(
 def figures(rows: Sequence[Row]) -> list[Figure]:
     """Plots over all scenes and for each, and tables."""
     drawn = [row for row in rows if "frame" in row]
-    found = [*over_all(drawn), choices.figure(drawn), *_approaches(drawn)]
+    found = [*over_all(drawn), choices.figure(drawn), *_approaches(drawn), *_ground(rows)]
     for scene in dict.fromkeys(row["scene"] for row in drawn):
         own = [row for row in drawn if row["scene"] == scene]
         found.append(_time_plot(scene, own))
@@ -193,6 +195,22 @@ def _approaches(rows: Sequence[Row]) -> list[Figure]:
         caption = "Shadow volumes, static decals by our index and by the thesis's, dynamic lines by tiles and by lists."
         found.append(Figure(f"Figure 5.5: approaches, {name}", caption, plots.bars(groups, label, log="y")))
     return found
+
+
+def _ground(rows: Sequence[Row]) -> list[Figure]:
+    """What the terrain's own level of detail adds to the error, which is measured on all its samples."""
+    own = [row for row in rows if "ground_rms" in row]
+    if not own:
+        return []
+    cells = [
+        (row["scene"], row["view"], f"{row['ground_rms']:.4f}", f"{row['ground_moved']:.2%}") for row in own
+    ]
+    caption = (
+        "Layers with coverage over the terrain's level of detail, with which times are taken, beside those over all of"
+        f" its samples, on which errors are measured. Moved are pixels that differ by more than {MOVED:g}."
+    )
+    columns = ("scene", "view", "whole picture (rms)", "pixels moved")
+    return [Figure("What the terrain's level of detail adds", caption, table=Table(columns, cells))]
 
 
 def _time_plot(scene: str, rows: Sequence[Row]) -> Figure:

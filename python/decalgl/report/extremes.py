@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 SIZE = (96, 64)
 BLACK = Relief(color="black", strength=0.0)
+ONE_LOOK = "white"
 COLORS = [(0.9, 0.2, 0.2), (0.2, 0.8, 0.3), (0.3, 0.4, 1.0), (0.9, 0.8, 0.2), (0.7, 0.3, 0.9)]
 
 
@@ -55,13 +56,13 @@ class Case:
         """The case drawn by a technique.
 
         follows_view: lines have widths on the screen, as wide as theirs in the middle of the picture. one_look: all
-        are opaque and of one colour. kinds: "both" or "lines". looks: further keywords of lines, unless the case has
-        some.
+        lines are opaque and of one colour. kinds: "both" or "lines". looks: further keywords of lines, unless the case
+        has some.
         """
         scene = Scene(self.terrain, self.exaggeration, BLACK)
         if self.polygons and kinds == "both":
             table = _table("polygons", self.polygons)
-            scene.add_polygons(table, color=self._tints(len(table), one_look), technique=technique)
+            scene.add_polygons(table, color=self._tints(len(table)), technique=technique)
         if self.lines:
             table = _table("lines", self.lines)
             width = {"width": self.width, "width_units": "m"}
@@ -69,15 +70,13 @@ class Case:
                 width = {"width": self.width / self.pixel, "width_units": "px"}
             scene.add_lines(
                 table,
-                color=self._tints(len(table), one_look),
+                color=ONE_LOOK if one_look else self._tints(len(table)),
                 technique=technique,
                 **{**width, **(self.looks or looks)},
             )
         return scene
 
-    def _tints(self, count: int, one_look: bool) -> list[tuple[float, ...]]:
-        if one_look:
-            return [(*COLORS[0], 1.0)] * count
+    def _tints(self, count: int) -> list[tuple[float, ...]]:
         return [(*COLORS[i % len(COLORS)], self.alpha) for i in range(count)]
 
 

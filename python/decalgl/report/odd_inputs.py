@@ -135,4 +135,4 @@ def verdicts(rows: Sequence[Row]) -> Table:
     """What each technique makes of each input."""
     cells = {(row["scene"], row["technique"]): SHORT[row["verdict"]] for row in rows}
     names = dict.fromkeys(row["scene"] for row in rows)
-    return Table(["input", *WAYS], [[name, *(cells[name, way] for way in WAYS)] for name in names])
+    return Table(["input", *WAYS], [[name, *(cells.get((name, way), "–") for way in WAYS)] for name in names])

@@ -27,6 +27,10 @@ LOOKS = {
     "volume": ("#8d6e4b", "P"),
     "clipmap": ("#5f6b73", "X"),
     "distance_field": ("#e07a1f", "*"),
+    "static coverage": ("#18a3a3", "<"),
+    "dynamic bins": ("#7b2d8b", "^"),
+    "dynamic lists": ("#b0407f", ">"),
+    "dynamic coverage": ("#c79ae0", "p"),
 }
 OTHERS = (
     "#1b6ca8",

@@ -12,25 +12,10 @@
 // TESTED, ACTIVE     how many primitives were looked at, or active, as colours
 // LENS               one side of the lens's border
 // IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
-#include "shared/ray.glsl"
+#include "technique/loops/pixel.glsl"
 #include "technique/loops/walk.glsl"
-
-uniform usampler2D position_texture;
 #ifdef SAMPLES
 #include "shared/sample_offsets.glsl"
-uniform sampler2D surface_texture;
-#endif
-#if defined(TESTED) || defined(ACTIVE)
-#include "technique/loops/heat.glsl"
-#endif
-#ifdef LENS
-#include "technique/loops/lens.glsl"
-#endif
-
-#ifdef IDS
-layout(location = 0) out uint id;
-#else
-layout(location = 0) out vec4 color;
 #endif
 
 void main() {
@@ -46,8 +31,7 @@ void main() {
     if (found.seen == no_slot) discard;
     id = found.seen + 1u;
 #elif defined(SAMPLES)
-    vec4 surface = texelFetch(surface_texture, pixel, 0);
-    mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
+    mat2 foot = footprint_of(pixel);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < sample_count; ++i) sum += walk(lattice_point(position, foot * sample_offsets[i])).sum;
     color = sum / float(sample_count);

@@ -8,28 +8,10 @@
 // LENS               one side of the lens's border
 // TESTED, ACTIVE     how many edges were looked at, as colours: all of them are active
 // IDS                writes 1 + slot of the topmost feature at the centre, nothing where there is none
-#ifdef IDS
-#undef SAMPLES
-#endif
-#include "shared/ray.glsl"
+#include "technique/loops/pixel.glsl"
 #include "technique/loops/cells.glsl"
-
-uniform usampler2D position_texture;
 #ifdef SAMPLES
 #include "technique/loops/cell_samples.glsl"
-uniform sampler2D surface_texture;
-#endif
-#if defined(TESTED) || defined(ACTIVE)
-#include "technique/loops/heat.glsl"
-#endif
-#ifdef LENS
-#include "technique/loops/lens.glsl"
-#endif
-
-#ifdef IDS
-layout(location = 0) out uint id;
-#else
-layout(location = 0) out vec4 color;
 #endif
 
 void main() {
@@ -41,9 +23,7 @@ void main() {
     if (share == 0.0) discard;
 #endif
 #ifdef SAMPLES
-    vec4 surface = texelFetch(surface_texture, pixel, 0);
-    mat2 foot = footprint(pixel_from_centre(), surface.xy, surface.z);
-    color = mean_of_samples(position, foot * quanta_per_metre);
+    color = mean_of_samples(position, footprint_of(pixel) * quanta_per_metre);
 #else
     Found found = walk(lattice_point(position, vec2(0.0)));
 #if defined(IDS)

@@ -1,7 +1,7 @@
 """LOOPS: the experiments of the paper, on the contours of the smallest size, and what details that no view shows save.
 
 primitives   table 2: triangles ÷ segments of isolines, by the index of LOCALIS and by others, in four views
-bvh          figure 16: the paper's indexes along a flight, ÷ the fitted one
+bvh          figure 16: the paper's indexes along a flight, step by step, ÷ the fitted one
 detail       half a pixel of tolerance ÷ full detail; and ÷ the static index, which draws everything
 prepared     preparing, by the size of the map: isolines of 1, 2, 4 and 8 million segments in a whole run
 """
@@ -146,7 +146,14 @@ def _compare_indexes(work: Workload, records: Records, size: str) -> None:
             renderer = work.renderer(scene_of(work, "iso-bands", size, dg.Loops(bvh=bvh)))
         except dg.MemoryLimitError:
             continue  # an index larger than shaders can read has no row
-        found[name] = _drawn(renderer, flight)
+        steps = [_drawn(renderer, [camera]) for camera in flight]
+        for place, step in enumerate(steps, start=1):
+            times = {f"step_{part}": step[f"loops_{part}"] for part in ("ms", "cells_ms", "terrain_ms")}
+            records.at(f"iso-bands {size}", f"step {place}", f"loops {name}").update(times)
+        means = {
+            each: statistics.fmean(step[each] for step in steps) for each in steps[0] if each.endswith("_ms")
+        }
+        found[name] = {**steps[0], **means}  # counts are those of the first view
     # Not beside the constant one, as the paper's figure has it: that may be too large.
     fitted = found["fitted"]
     for name, times in found.items():

@@ -1,4 +1,4 @@
-"""What looks cost: the same lines and polygons with every style, and with every way of anti-aliasing.
+"""What looks cost: the same lines and polygons with every style, and with every way of anti-aliasing, in every index.
 
 style    the layers' pass without anti-aliasing ÷ that of plain ones (Zechmeister 2020, figures 5.14 and 5.16)
 mode     a whole frame with a mode of anti-aliasing ÷ one without (his figure 5.9)
@@ -12,6 +12,8 @@ from __future__ import annotations
 import dataclasses
 import itertools
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 import decalgl as dg
 
@@ -40,36 +42,52 @@ LINE_STYLES: dict[str, Looks] = {
     "bevel": {"corner": "bevel"},
     "butt": {"cap": "butt"},
     "square": {"cap": "square"},
+    "a width each": {"width": lambda count: LINE_WIDTH * (0.5 + np.arange(count) % 8 / 8.0)},
+    "a colour each": {"color": lambda count: [("navy", "crimson", "teal")[i % 3] for i in range(count)]},
     "dashed": {"dash": DASH},
+    "stippled": {"dash": dg.Pattern.stipple("1101", step=6.0)},
+    "arrows": {"dash": dg.Pattern.arrows(every=60.0, length=20.0, shaft=0.3)},
     "bands": {"bands": [(0.5, "white"), (1.0, "black")]},
     "casing": {"casing": dg.Casing(width=LINE_WIDTH / 3.0)},
     "tangent": {"slope_correction": "tangent"},
     "thoeny": {"slope_correction": "thoeny"},
+    "order by size": {"order": "size"},
 }
 FILL_STYLES: dict[str, Looks] = {
     "outlines": {"outline": dg.Outline(**OUTLINE)},
+    "outlines each over its fill": {"outline": dg.Outline(order="feature", **OUTLINE)},
     "inset outlines": {"outline": dg.Outline(mode="inset", **OUTLINE)},
     "offset outlines": {"outline": dg.Outline(mode="offset", **OUTLINE)},
     "hatch": {"hatch": dg.Hatch(spacing=60.0, width=20.0)},
+    "crossed hatch": {"hatch": dg.Hatch(spacing=60.0, width=20.0, crossed=True)},
+    "alpha 0.5": {"alpha": 0.5},
+    "order by size": {"order": "size"},
 }
-TREE_STYLES = ("miter", "dashed")
-MODES = ("coverage", "fxaa", "msaa", "ssaa")
-SAMPLES = 4
+# By what they are of, and by index; Thöny's is for lines alone.
+STYLES = {"isolines": LINE_STYLES, "iso-bands": FILL_STYLES}
+INDEXES = {"isolines": ("grid", "bvh", "thoeny"), "iso-bands": ("grid", "bvh")}
+# Ways of anti-aliasing, by what a renderer is made with. Thöny's coverage is of lines alone.
+MODES: tuple[tuple[Looks, tuple[str, ...]], ...] = (
+    ({"samples": 4}, ("coverage", "fxaa", "msaa", "ssaa")),
+    ({"samples": 8}, ("msaa", "ssaa")),
+    ({"coverage": "thoeny"}, ("coverage",)),
+)
 FEW = 2  # rounds of what takes many passes
+PATIENCE = 1.0  # seconds: frames that take longer are drawn once
 
 
 def measure(work: Workload, records: Records) -> None:
     width, height = work.picture
     work = dataclasses.replace(work, picture=(width // 2, height // 2))
-    for kind, styles in (("isolines", LINE_STYLES), ("iso-bands", FILL_STYLES)):
-        _styles(work, records, kind, styles, "grid")
-        _modes(work, records, kind)
-    _styles(work, records, "isolines", {name: LINE_STYLES[name] for name in TREE_STYLES}, "bvh")
-    _slow_coverage(work, records)
+    for kind, indexes in INDEXES.items():
+        for index in indexes:
+            _styles(work, records, kind, index)
+            _modes(work, records, kind, index)
 
 
-def _styles(work: Workload, records: Records, kind: str, styles: dict[str, Looks], index: str) -> None:
+def _styles(work: Workload, records: Records, kind: str, index: str) -> None:
     plain = work.renderer(_scene(work, kind, {}), index)
+    styles = STYLES[kind]
     for group in _batches(styles):
         work.say(f"{kind}, {index}: {', '.join(group)}")
         renderers = {name: work.renderer(_scene(work, kind, styles[name]), index) for name in group}
@@ -83,38 +101,34 @@ def _styles(work: Workload, records: Records, kind: str, styles: dict[str, Looks
                 )
 
 
-def _modes(work: Workload, records: Records, kind: str) -> None:
-    work.say(f"{kind}: {', '.join(MODES)}")
-    renderer = work.renderer(_scene(work, kind, {}), samples=SAMPLES)
-    for view in VIEWS:
-        measures = [drawing(renderer, work.views[view], mode, mode) for mode in ("none", *MODES)]
-        times = interleaved(min(work.runs, FEW), *measures)
-        for mode in MODES:
-            _record_mode(work, records, kind, mode, view, "grid", times)
-
-
-def _slow_coverage(work: Workload, records: Records) -> None:
-    """Lines alone, and once: Thöny's, which looks into all cells around, and that of trees, with 64 walks a pixel."""
-    scene = _scene(work, "isolines", {})
-    options: dict[str, tuple[str, Looks]] = {
-        "coverage thoeny": ("grid", {"coverage": "thoeny"}),
-        "coverage": ("bvh", {}),
-    }
-    for mode, (index, chosen) in options.items():
-        work.say(f"isolines, {index}: {mode}")
-        renderer = work.renderer(scene, index, **chosen)
+def _modes(work: Workload, records: Records, kind: str, index: str) -> None:
+    """Each beside none; what takes long, as trees with 64 walks a pixel do, once."""
+    scene = _scene(work, kind, {})
+    for options, modes in MODES:
+        if "coverage" in options and kind != "isolines":
+            continue
+        names = {mode: _name(mode, options) for mode in modes}
+        work.say(f"{kind}, {index}: {', '.join(names.values())}")
+        renderer = work.renderer(scene, index, **options)
         for view in VIEWS:
-            none = drawing(renderer, work.views[view], "none", "none")
-            times = interleaved(1, none, drawing(renderer, work.views[view], "coverage", mode))
-            _record_mode(work, records, "isolines", mode, view, index, times)
+            drawn = {"none": "none", **names}
+            measures = [drawing(renderer, work.views[view], mode, name) for mode, name in drawn.items()]
+            times = interleaved(min(work.runs, FEW), *measures, patience=PATIENCE)
+            for name in names.values():
+                mode_ms, none_ms = times[f"{name}_frame_ms"], times["none_frame_ms"]
+                _record(work, records, kind, name, view, index).update(
+                    mode_ms=mode_ms,
+                    none_ms=none_ms,
+                    mode=mode_ms / none_ms,
+                    mode_layers_ms=times[f"{name}_ms"],
+                )
 
 
-def _record_mode(
-    work: Workload, records: Records, kind: str, mode: str, view: str, index: str, times: dict[str, float]
-) -> None:
-    mode_ms, none_ms = times[f"{mode}_frame_ms"], times["none_frame_ms"]
-    found = _record(work, records, kind, mode, view, index)
-    found.update(mode_ms=mode_ms, none_ms=none_ms, mode=mode_ms / none_ms, mode_layers_ms=times[f"{mode}_ms"])
+def _name(mode: str, options: Looks) -> str:
+    """Such as msaa 8, or coverage thoeny."""
+    if mode in ("msaa", "ssaa"):
+        return f"{mode} {options['samples']}"
+    return f"{mode} thoeny" if "coverage" in options else mode
 
 
 def _record(work: Workload, records: Records, kind: str, name: str, view: str, index: str) -> dict[str, Any]:
@@ -123,8 +137,12 @@ def _record(work: Workload, records: Records, kind: str, name: str, view: str, i
 
 
 def _scene(work: Workload, kind: str, looks: Looks) -> dg.Scene:
+    """looks: keywords, or what makes one of the number of features."""
     scene = dg.Scene(work.ground)
-    add_contours(scene, kind, work.contours(kind, work.middle), **looks)
+    arrays = work.contours(kind, work.middle)
+    count = len(arrays["heights"]) if kind == "iso-bands" else len(arrays["offsets"]) - 1
+    given = {name: look(count) if callable(look) else look for name, look in looks.items()}
+    add_contours(scene, kind, arrays, **given)
     return scene
 
 
