@@ -88,20 +88,10 @@ CHANGES = {
     "a draw order": "{reorder:.2f}",
     "the lens moved, and drawn": "{lens:.2f}",
 }
-BY_STYLE = {"scene": "{scene}", "index": "`{index}`"}
-STYLES = {
-    **BY_STYLE,
-    "close": "{close[style_ms]:.1f} ms",
-    "close ÷ plain": "{close[style]:.2f}",
-    "oblique": "{oblique[style_ms]:.1f} ms",
-    "oblique ÷ plain": "{oblique[style]:.2f}",
-}
-MODES = {
-    **BY_STYLE,
-    "close": "{close[mode_ms]:.0f} ms",
-    "close ÷ `none`": "{close[mode]:.2f}",
-    "oblique": "{oblique[mode_ms]:.0f} ms",
-    "oblique ÷ `none`": "{oblique[mode]:.2f}",
+LOOKS = {"scene": "{scene}"} | {
+    f"`{index}`, {view}": f"{{{index}_{view}}}"
+    for index in ("grid", "bvh", "thoeny")
+    for view in ("close", "oblique")
 }
 LOOPS_DRAWN = {
     "drawn by": "{by}",
@@ -278,12 +268,11 @@ def extremes(results: Results) -> str:
 
 def styles(results: Results) -> str:
     """Styles beside plain strokes and fills, and modes of anti-aliasing beside none."""
-    drawn, modes = (
-        _by_view(_having(results, name, techniques=("static", "bvh", "thoeny"))) for name in ("style", "mode")
-    )
+    drawn = _by_index(results, "style", "{style:.2f} ({style_ms:.1f} ms)")
     if not drawn:
         return "No figures yet."
-    return "\n\n".join([_table(drawn, STYLES), _table(modes, MODES), machine(results, "960 x 540")])
+    modes = _by_index(results, "mode", "{mode:.2f} ({mode_ms:.0f} ms)")
+    return "\n\n".join([_table(drawn, LOOKS), _table(modes, LOOKS), machine(results, "960 x 540")])
 
 
 def changes(results: Results) -> str:
@@ -429,13 +418,13 @@ def _having(
     return [one for one in records if one["scene"].startswith(scenes)]
 
 
-def _by_view(records: list[Record]) -> list[Record]:
-    """One record for all views of a scene and an index, with those of the views by their names."""
-    found: dict[tuple[str, str], Record] = {}
-    for one in records:
+def _by_index(results: Results, value: str, cell: str) -> list[Record]:
+    """One record for all views and indexes of a scene, with a text for each; a dash where it was not measured."""
+    found: dict[str, Record] = {}
+    for one in _having(results, value, techniques=("static", "bvh", "thoeny")):
         index = "grid" if one["technique"] == "static" else one["technique"]
-        both = found.setdefault((one["scene"], index), {"scene": one["scene"], "index": index})
-        both[one["view"]] = one
+        empty = {**{column[1:-1]: "–" for column in LOOKS.values()}, "scene": one["scene"]}
+        found.setdefault(one["scene"], empty)[f"{index}_{one['view']}"] = cell.format(**one)
     return list(found.values())
 
 
