@@ -121,11 +121,14 @@ def test_every_point_leads_to_its_picture(report: Path) -> None:
 
 def test_the_ground_s_level_of_detail_is_told_apart(report: Path) -> None:
     rows = json.loads((report / "report.json").read_text())["records"]
-    own = [row for row in rows if "ground_rms" in row]
-    assert own
+    part = [row for row in rows if row["part"] == "error_over_time"]
+    own = [row for row in part if "ground_rms" in row]
+    assert {row["view"] for row in own} == {row["view"] for row in part if "frame" in row}
     assert all(0.0 <= row["ground_rms"] < 0.1 and 0.0 <= row["ground_moved"] < 0.2 for row in own)
-    titles = [figure.title for figure in error_over_time.figures(own)]
-    assert "What the terrain's level of detail adds" in titles
+    tables = {figure.title: figure.table for figure in error_over_time.figures(part)}
+    table = tables["What the terrain's level of detail adds"]
+    assert table is not None
+    assert len(table.rows) == len(own)
 
 
 def test_ground_that_is_coarser_moves_more(monkeypatch: pytest.MonkeyPatch) -> None:
