@@ -129,14 +129,18 @@ class Way:
 # Of what is cut into triangles: cutting takes the square of the number of holes, and volumes a mask for each feature.
 TRIANGLES = {"overlap": 1e3, "nesting": 100.0, "holes": 1e4, "vertices": 1e5}
 COVERAGE = {"antialias": "coverage"}
+# Of what the reference looks at 256 times for each pixel.
+AREAS_MOST = {"overlap": 1e3, "vertices": 1e5, "holes": 1e4}
 WAYS = {
     "static": Way(dg.Static()),
-    "static coverage": Way(dg.Static(), COVERAGE, AREAS),
+    "static coverage": Way(dg.Static(), COVERAGE, AREAS, most=AREAS_MOST),
     "static bvh": Way(dg.Static(), {"index": "bvh"}),
     "static thoeny": Way(dg.Static(), {"index": "thoeny"}, one_look=True),
     "dynamic bins": Way(dg.Dynamic(method="bins"), follows_view=True, kinds="lines"),
     "dynamic lists": Way(dg.Dynamic(method="lists"), follows_view=True, kinds="lines"),
-    "dynamic coverage": Way(dg.Dynamic(method="bins"), COVERAGE, AREAS, follows_view=True, kinds="lines"),
+    "dynamic coverage": Way(
+        dg.Dynamic(method="bins"), COVERAGE, AREAS, follows_view=True, kinds="lines", most=AREAS_MOST
+    ),
     "loops": Way(dg.Loops()),
     "volume": Way(dg.Volume(), most=TRIANGLES),
     # Its joints are miters, from right angles on bevels, and its ends have no caps.
