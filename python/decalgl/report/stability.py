@@ -130,7 +130,7 @@ class Way:
 TRIANGLES = {"overlap": 1e3, "nesting": 100.0, "holes": 1e4, "vertices": 1e5}
 COVERAGE = {"antialias": "coverage"}
 # Of what the reference looks at 256 times for each pixel.
-AREAS_MOST = {"overlap": 1e3, "vertices": 1e5, "holes": 1e4}
+AREAS_MOST = {"overlap": 100.0, "vertices": 1e5, "holes": 1e4}
 WAYS = {
     "static": Way(dg.Static()),
     "static coverage": Way(dg.Static(), COVERAGE, AREAS, most=AREAS_MOST),
