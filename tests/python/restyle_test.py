@@ -90,21 +90,25 @@ STYLES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 
 @INDEXES
 @BOTH
+@pytest.mark.parametrize(("south", "most"), [(0.0, 5.0), (1000.0, TWO_COVERAGES)], ids=["levels", "cells"])
 @pytest.mark.parametrize("name", STYLES)
-def test_styles_change_where_the_index_has_their_places(name: str, antialias: str, index: str) -> None:
+def test_styles_change_where_the_index_has_their_places(
+    name: str, south: float, most: float, antialias: str, index: str
+) -> None:
+    """From levels of detail, and cell by cell."""
     before, after = STYLES[name]
     fixed = {"width": 5.0, **({"cap": before["cap"]} if "cap" in before else {})}
-    renderer = prepared(scene_of(PLAIN, {**fixed, **before}), antialias, index=index)
+    renderer = prepared(scene_of(PLAIN, {**fixed, **before}, south=south), antialias, index=index)
     first = renderer.render()
     renderer.restyle("ways", **after)
     frame, expected = (
         renderer.render(),
-        prepared(scene_of(PLAIN, {**fixed, **after}), antialias, index=index).render(),
+        prepared(scene_of(PLAIN, {**fixed, **after}, south=south), antialias, index=index).render(),
     )
     np.testing.assert_array_equal(frame.ids, expected.ids)
     # Lists made for miters lead some pixels another way.
     apart = np.abs(frame.image.astype(int) - expected.image)
-    assert apart.max() <= (TWO_COVERAGES if antialias == "coverage" else 0)
+    assert apart.max() <= (most if antialias == "coverage" else 0)
     assert (apart.max(axis=-1) > 1).mean() < 0.01
     assert (frame.image != first.image).any()
 
