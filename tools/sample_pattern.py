@@ -3,8 +3,8 @@
 
 Among many scrambled (0, m, 2)-nets (Sobol' points with Owen's scrambling), keeps the one whose mean over the samples
 errs least, in the root mean square, on straight edges at every angle and offset that cross the pixel. Of the largest
-it tells as well how far pixels are off that are seen again in quarters where sixteen samples tell something else than
-the others (`composite_points` of static decals).
+it tells as well how far pixels are off whose samples differ and are followed by others along the border
+(`composite_points` of static decals).
 
 Run: python tools/sample_pattern.py
 """
@@ -75,13 +75,28 @@ def best_net(bits: int) -> tuple[np.ndarray, float, float]:
     return best, best_rms, worst
 
 
-def covered(points: np.ndarray, normal: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """Which points (n, 2) lie in each half plane, (n, edges)."""
-    return points @ normal.T <= offset
+def followed(growth: np.ndarray, count: int) -> np.ndarray:
+    """`sample_place` of `cpp/shaders/shared` for borders (n, 2): places (count, n, 2)."""
+    normal = growth / np.abs(growth).sum(axis=1, keepdims=True)
+    wide = np.abs(normal).max(axis=1)
+    narrow = 1 - wide
+    share = (np.arange(count)[:, None] + 0.5) / count
+    least = np.minimum(share, 1 - share)
+    corner = np.where(
+        2 * least * wide < narrow, np.sqrt(2 * least * wide * narrow), least * wide + narrow / 2
+    )
+    across = np.where(share < 0.5, corner - 0.5, 0.5 - corner) / (normal**2).sum(axis=1)
+    middle = across[..., None] * normal
+    along = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    along = np.where(np.abs(along) < 1e-6, 1e-6, along)
+    ends = np.stack([(-0.5 - middle) / along, (0.5 - middle) / along])
+    begin, end = ends.min(axis=0).max(axis=-1), ends.max(axis=0).min(axis=-1)
+    place = np.array([(int(f"{i:016b}"[::-1], 2) + 0.5) / 65536 for i in range(count)])
+    return middle + along * (begin + (end - begin) * place[:, None])[..., None]
 
 
-def tell_quarters(points: np.ndarray) -> None:
-    """Prints errors of 64 samples on random edges: alone, and with four times as many where they differ."""
+def tell_followed(points: np.ndarray) -> None:
+    """Prints errors on random edges of samples that follow the border as 64 see it."""
     random = np.random.default_rng(7)
     angle, offset = random.uniform(0, 2 * np.pi, 40_000), random.uniform(-0.7, 0.7, 40_000)
     normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -90,21 +105,17 @@ def tell_quarters(points: np.ndarray) -> None:
     flat = np.abs(normal).min(axis=1)
     # As in `edges`: turned so that each of 256 columns is cut at one height.
     exact = np.clip((offset - flat * fine[:, None]) / steep + 0.5, 0, 1).mean(axis=0)
-    inside = covered(points, normal, offset)
-    middles = np.array([(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)])
-    quarters = np.concatenate([0.5 * points + middle for middle in middles])
-    once, again = inside.mean(axis=0), covered(quarters, normal, offset).mean(axis=0)
-    sixteen = inside.reshape(4, 16, -1).mean(axis=1)
-    mixed = (once > 0) & (once < 1)
-    for name, rough in (
-        ("no pixels", np.zeros_like(mixed)),
-        ("pixels whose sixteens differ by 0.03", sixteen.std(axis=0) > 0.03),
-        ("all pixels with a border", mixed),
-    ):
-        error = np.abs(np.where(rough, again, once) - exact)
-        rms = np.sqrt((error[mixed] ** 2).mean())
-        share = rough[mixed].mean()
-        print(f"{name} in quarters, {share:.0%}: rms {rms:.4f}, largest {error.max():.4f}")
+    inside = points @ normal.T <= offset
+    mixed = inside.any(axis=0) & ~inside.all(axis=0)
+    weight = np.maximum(0.45 - (points**2).sum(axis=1), 0.0)
+    growth = (inside * weight[:, None]).T[mixed] @ points
+    found = inside.mean(axis=0)
+    for count in (64, 128, 192):
+        again = (followed(growth, count) * normal[mixed]).sum(axis=-1) <= offset[mixed]
+        found[mixed] = again.mean(axis=0)
+        error = np.abs(found - exact)
+        rms = float(np.sqrt((error[mixed] ** 2).mean()))
+        print(f"{count} samples that follow the border: rms {rms:.4f}, largest {error.max():.4f}")
 
 
 def main() -> None:
@@ -118,7 +129,7 @@ def main() -> None:
         for row in range(0, len(net), 3):
             print("   ", ", ".join(f"vec2({x:.7g}, {y:.7g})" for x, y in offsets[row : row + 3]))
         if len(net) == 64:
-            tell_quarters(offsets)
+            tell_followed(offsets)
 
 
 if __name__ == "__main__":

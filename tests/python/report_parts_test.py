@@ -181,7 +181,7 @@ def test_every_verdict_that_is_not_exact_has_a_reason() -> None:
 def test_odd_inputs_are_drawn_right_or_refused(name: str) -> None:
     """Refused are points that are no numbers and lines without a width, and nothing else.
 
-    Textures are filtered; coverage sees a pixel beside a hole in the ground by 16 rays.
+    Textures are filtered; coverage follows rays beside a hole near what the pixels around see.
     """
     is_refused = name in ("points that are no numbers", "points at infinity", "lines of width 0")
     case = odd_inputs.ODD_INPUTS[name]()

@@ -115,9 +115,16 @@ def test_what_is_near_is_drawn_cell_by_cell(name: str) -> None:
         assert any("LEVELS" in variant for variant in variants) == (name in FAR and zoom == 1)
 
 
-@pytest.mark.parametrize("kind", ["polygons", "lines"])
-def test_straight_edges_cover_their_share_of_the_pixel(kind: Literal["polygons", "lines"]) -> None:
-    """Pixels that a border crosses farther from all corners than they are wide, against the exact area."""
+@pytest.mark.parametrize(
+    ("kind", "spacing", "samples"), [("polygons", 100.0, 64), ("lines", 100.0, 64), ("polygons", 0.0025, 256)]
+)
+def test_straight_edges_cover_their_share_of_the_pixel(
+    kind: Literal["polygons", "lines"], spacing: float, samples: int
+) -> None:
+    """Pixels that a border crosses farther from all corners than they are wide, against the exact area.
+
+    With vertices `spacing` metres apart: where there are many, cells are small, and samples walk one by one.
+    """
     scene = flat_ground()
     turns = np.linspace(0.0, np.pi, 24, endpoint=False)
     bar = np.array([(-6.0, -3.0), (6.0, -3.0), (6.0, 3.0), (-6.0, 3.0)])
@@ -126,7 +133,8 @@ def test_straight_edges_cover_their_share_of_the_pixel(kind: Literal["polygons",
         rotation = np.array([(np.cos(turn), np.sin(turn)), (-np.sin(turn), np.cos(turn))])
         bars.append(place + bar @ rotation)
     if kind == "polygons":
-        styled(scene, kind, [[ring] for ring in bars], fill=fill(24, (1.0, 1.0, 1.0)))
+        rings = [shapely.get_coordinates(shapely.segmentize(shapely.Polygon(b), spacing))[:-1] for b in bars]
+        styled(scene, kind, [[ring] for ring in rings], fill=fill(24, (1.0, 1.0, 1.0)))
     else:
         middles = [[np.array([ring[[0, 3]].mean(axis=0), ring[[1, 2]].mean(axis=0)])] for ring in bars]
         styled(scene, kind, middles, stroke=stroke(24, 6.0, (1.0, 1.0, 1.0), StrokeStyle("miter", "butt")))
@@ -142,6 +150,8 @@ def test_straight_edges_cover_their_share_of_the_pixel(kind: Literal["polygons",
     judged = (exact > 0.0) & (exact < side**2) & (shapely.distance(shapely.points(x, y), corners) > 2 * side)
     got = judge.overlay_of(renderer("grid"), view, "coverage")[..., 3].reshape(-1)
     assert judged.sum() > 1000
+    shares = len(np.unique(np.rint(255.0 * got[judged])))
+    assert samples / 3 < shares <= samples + 1
     error = np.abs(got - exact / side**2)[judged]
     assert error.max() <= STRAIGHT
     assert np.sqrt((error**2).mean()) <= RMS / 2

@@ -1,4 +1,4 @@
-// Marks pixels through whose area a silhouette or a sharp crease passes.
+// Marks pixels through whose area a silhouette passes, with 1, or a crease, with 0.5.
 //
 // Where one surface fills a pixel and its neighbours, the plane of its triangle says where the neighbours' rays meet
 // the ground. A pixel is marked where that is too far from where they do, counted in the pixel's own footprints, or
@@ -73,13 +73,15 @@ void main() {
     bool is_small = max(length(foot[0]), length(foot[1])) > smallest_facets * cell_at(place, distance);
     if (at_border && is_small) most = min(most, farthest_among_small);
 #endif
-    bool marked = false;
+    bool marked = false, is_silhouette = false;
     for (int i = 0; i < 4; ++i) {
         ivec2 neighbour = clamp(pixel + neighbours[i], ivec2(0), drawn_size - 1);
         vec4 beside = texelFetch(surface_texture, neighbour, 0);
         vec2 step = vec2(neighbour - pixel);
-        bool near = distance_from_plane(surface, footprints_of_map, beside, place, step) <= most;
-        marked = marked || isinf(beside.z) != sky || (!sky && !near);
+        float apart = distance_from_plane(surface, footprints_of_map, beside, place, step);
+        bool at_sky = isinf(beside.z) != sky;
+        is_silhouette = is_silhouette || at_sky || (!sky && !(apart <= farthest));
+        marked = marked || at_sky || (!sky && !(apart <= most));
     }
-    mark = float(marked);
+    mark = is_silhouette ? 1.0 : marked ? 0.5 : 0.0;
 }

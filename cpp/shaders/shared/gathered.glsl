@@ -6,8 +6,11 @@
 //     s s s s s s s s        sample s of a pixel lies at gathered_offsets[s]
 //
 // RAYS   blocks of 4 x 4 instead, one texel for each ray: what four samples lie on
+// WHOLE  one texel for each pixel
 #ifdef RAYS
 const int gathered_side = 4;
+#elif defined(WHOLE)
+const int gathered_side = 1;
 #else
 const int gathered_side = 8;
 #endif

@@ -76,9 +76,12 @@ float reach_of(vec2 pixel, vec4 surface) {
     return (abs(dot(normal, dx)) + abs(dot(normal, dy))) / abs(dot(normal, ray_direction_at(pixel)));
 }
 
-bool is_over_terrain(vec3 relative) {
+// Whether there is ground at a place, and no hole.
+bool is_over_ground(vec3 relative) {
     vec2 steps = vec2(relative.x, -relative.y) / spacing.xy + base_sample_fraction.xy;
-    return is_cell(base_sample.xy + ivec2(floor(steps)));
+    Cell cell = cell_of(base_sample.xy + ivec2(floor(steps)));
+    vec2 place = (steps - vec2(cell.low - base_sample.xy)) / vec2(cell.high - cell.low);
+    return is_cell(cell.low) && is_solid(corners_of(cell), place.y > place.x);
 }
 
 // Looks where the surface that is seen at a pixel's centre would be.
@@ -98,7 +101,7 @@ Sight look(vec2 pixel, Centre centre) {
         vec2 gradient = gradient_of(met);
         return Sight(true, gradient, distance_along_ray(met, gradient, origin, direction));
     }
-    bool stands_for_it = found == not_known && is_over_terrain(origin + on_plane * direction);
+    bool stands_for_it = found == not_known && is_over_ground(origin + on_plane * direction);
     return Sight(stands_for_it, surface.xy, stands_for_it ? on_plane : until);
 }
 

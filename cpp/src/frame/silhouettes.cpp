@@ -160,8 +160,11 @@ void Silhouettes::count_facets(gl::ProgramLibrary& programs) const {
     gl::Program& program = programs.get("facets");
     too_few_framebuffer_.bind();
     program.use();
+    set_pixels(program);
     program.set("ray_surface_texture", 0);
     rays_.surface.bind(0);
+    program.set("marks_texture", 1);
+    marks_.bind(1);
     no_vertices_.bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }

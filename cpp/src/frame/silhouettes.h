@@ -2,7 +2,7 @@
 // the mean of samples.
 //
 //     G-buffer, overlay ─▶ marks ─▶ list ─▶ 16 rays a pixel ─▶ G-buffer of 64 texels a pixel ─▶ overlay ─▶ compose ─▶ means
-//                                   CPU     terrain/gathered   terrain/spread; where the rays met many facets
+//                                   CPU     terrain/gathered   terrain/spread; at silhouettes, and where the rays met many facets
 //                                                              (terrain/facets), a ray for each texel
 //
 // Such pixels are few, so what they see is gathered in textures of its own, batch after batch, and neither the
@@ -42,7 +42,7 @@ public:
     void set_gathered(gl::Program& program) const;
     // The same for the program that follows the batch's rays, into `rays()`.
     void set_rays(gl::Program& program) const;
-    // Which pixels' rays met so many facets that each sample needs its own.
+    // In which pixels each sample needs a ray of its own.
     void count_facets(gl::ProgramLibrary& programs) const;
     // The samples on what the rays met, into `seen()`, with depth 1 where they need rays of their own.
     void spread(gl::ProgramLibrary& programs);

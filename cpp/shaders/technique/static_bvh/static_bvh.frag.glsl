@@ -71,7 +71,7 @@ uniform int first_row;  // of the strip that is drawn
 uniform sampler2D surface_texture;
 #endif
 #ifdef SAMPLES
-#include "technique/static_bvh/sample_place.glsl"
+#include "shared/sample_place.glsl"
 uniform sampler2D border_texture;
 uniform ivec2 sample_range;  // the first and the one after the last
 #endif
@@ -135,7 +135,7 @@ void main() {
     color = vec4(0.0);
     int i = sample_range.x;
     do {
-        color += walk(lattice_point(position, foot * sample_place(growth, i))).sum;
+        color += walk(lattice_point(position, foot * sample_place(growth, i, BORDER_SAMPLES))).sum;
     } while (++i < sample_range.y);
     color /= float(sample_range.y - sample_range.x);
 #else

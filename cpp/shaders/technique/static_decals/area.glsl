@@ -9,14 +9,18 @@
 // (0, 6, 2)-net (Sobol' points), chosen for the smallest error on straight edges: tools/sample_pattern.py.
 #include "shared/composed_samples.glsl"
 #include "technique/static_decals/stroke_area.glsl"
+#ifdef POINTS
+#include "shared/sample_place.glsl"
+#endif
 
 // Pixels larger than this many cells are sampled point by point.
 const float most_cells_across = 2.5;
 const int most_borders = 16;  // those between fills are met from both sides, and strokes count twice
-const float most_spread = 0.03;
-// Mesa's software rasteriser ends a shader's loops after 65,535 turns, and quarters take four times as many.
+const float most_apart = 0.25;  // of what 64 points see, before more are looked at
+const int following = 192;
+// Mesa's software rasteriser ends a shader's loops after 65,535 turns, and more samples take four times as many.
 const int most_words = 4096;
-const int most_texels = 8192;
+const int most_texels = 12288;
 const float most_cells_looked_into = 4.0;  // where strokes are drawn by their estimated coverage
 
 // How the walk from the cell's corner meets a ring's edge (ring_cells.h): `above` is how far above the place where the
@@ -231,31 +235,34 @@ vec2 middle_of_quarter(int index) {
 }
 
 #ifdef POINTS
-// Each sample by itself, where it lies in a cell that few others lie in: first those of the pixel, and where they are rough
-// those of its quarters in their place. They are rough where sixteen of them, which are as even a pattern as all, tell
-// something else than the others.
+// Each sample by itself, where it lies in a cell that few others lie in. Where 64 differ, others in their place that follow
+// the border: the way in which what is seen grows, in the channel where that is most, of samples that weigh the less the farther
+// out they lie, as a square's corners mislead.
 vec4 composite_points(LatticePosition centre, mat2 foot) {
-    const int all = 5 * sample_count;
-    vec4 sum = vec4(0.0), squares = vec4(0.0), sixteen = vec4(0.0);
+    vec4 sum = vec4(0.0), least = vec4(1.0), most = vec4(0.0), right = vec4(0.0), up = vec4(0.0);
+    vec2 growth = vec2(0.0);
     int i = 0, end = sample_count;
     do {
-        vec2 offset = sample_offsets[i & (sample_count - 1)];
-        if (i >= sample_count) offset = 0.5 * offset + middle_of_quarter(i / sample_count - 1);
-        sixteen += color_at(moved(centre, foot * offset));
+        bool follows = i >= sample_count;
+        vec2 offset = follows ? sample_place(growth, i - sample_count, following) : sample_offsets[i];
+        vec4 color = color_at(moved(centre, foot * offset));
+        sum += color;
+        least = min(least, color);
+        most = max(most, color);
+        vec4 weighed = max(0.45 - dot(offset, offset), 0.0) * color;
+        right += offset.x * weighed;
+        up += offset.y * weighed;
         ++i;
-        if ((i & 15) == 0) {
-            sum += sixteen;
-            squares += sixteen * sixteen;
-            sixteen = vec4(0.0);
-        }
-        vec4 spread = squares / 1024.0 - sum * sum / 4096.0;
-        bool is_rough = any(greaterThan(spread, vec4(most_spread * most_spread)));
-        if (i == sample_count && is_rough && walked_texels < most_texels) {
+        if (i == sample_count && any(greaterThan(most - least, vec4(most_apart))) && walked_texels < most_texels) {
+            for (int k = 0; k < 4; ++k) {
+                vec2 own = vec2(right[k], up[k]);
+                if (dot(own, own) > dot(growth, growth)) growth = own;
+            }
             sum = vec4(0.0);
-            end = all;
+            end += following;
         }
     } while (i < end);
-    return sum / float(end == all ? all - sample_count : sample_count);
+    return sum / float(end == sample_count ? sample_count : following);
 }
 #else
 // Cell by cell, each for all samples in it.

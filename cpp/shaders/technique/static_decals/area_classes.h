@@ -5,6 +5,6 @@
 
 #define CLASS_DONE 1.0    // everything seen covers all of the pixel, and is drawn already
 #define CLASS_CELLS 0.75  // 64 samples together, cell by cell
-#define CLASS_POINTS 0.5  // 64 samples, each by itself: the pixel spans many cells
+#define CLASS_POINTS 0.5  // 64 or 256 samples, each by itself: the pixel spans many cells
 
 #endif

@@ -5,7 +5,6 @@
 //     along it            anywhere from side to side, by bits in reversed order (Hammersley 1960)
 //
 // All features are asked at the same places, so neighbours that share a border leave nothing open.
-#include "technique/static_bvh/bvh_layout.h"
 
 // How far from the centre a line cuts off a share of the square; `narrow`, `wide`: its normal's parts, of sum 1.
 float quantile(float share, float narrow, float wide) {
@@ -14,9 +13,9 @@ float quantile(float share, float narrow, float wide) {
     return share < 0.5 ? from_corner - 0.5 : 0.5 - from_corner;
 }
 
-// `growth`: of the distance from the border for a pixel to the right and one up.
-vec2 sample_place(vec2 growth, int index) {
-    float share = (float(index) + 0.5) / float(BORDER_SAMPLES);
+// Of one of `count` samples. `growth`: of the distance from the border for a pixel to the right and one up.
+vec2 sample_place(vec2 growth, int index, int count) {
+    float share = (float(index) + 0.5) / float(count);
     float place = (float(bitfieldReverse(uint(index)) >> 16) + 0.5) / 65536.0;
     float sum = abs(growth.x) + abs(growth.y);
     vec2 normal = sum > 0.0 ? growth / sum : vec2(1.0, 0.0);
