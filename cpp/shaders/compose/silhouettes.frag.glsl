@@ -3,12 +3,17 @@
 // Where one surface fills a pixel and its neighbours, the plane of its triangle says where the neighbours' rays meet
 // the ground. A pixel is marked where that is too far from where they do, counted in the pixel's own footprints, or
 // where one of them sees the sky. At a border of a feature less is enough, and least where facets are about as small as
-// pixels: what is seen beside may be near the plane by chance.
+// pixels: what is seen beside may be near the plane by chance. A hole may lie between the centres: a pixel is marked too
+// where the ground at one of its corners has a missing sample.
 //
 //         \ |  |          plane of p says: q's ray meets the ground here   x
 //          \p  q          but it does there                                    o
 //           \|  |                                                          |<->|
+//
+// OVERLAY  with layers
+// HOLES    the terrain has missing samples
 #include "shared/ray.glsl"
+#include "terrain/mesh.glsl"
 
 layout(location = 0) out float mark;
 
@@ -31,6 +36,25 @@ float distance_from_plane(vec4 surface, mat2 footprints_of_map, vec4 beside, vec
     return length(footprints_of_map * (direction.xy * (beside.z - expected)));
 }
 
+// The sample to the north west of what is seen at a distance.
+ivec2 sample_at(vec2 place, float distance, vec2 offset) {
+    vec2 relative = (ray_origin_at(place) + distance * ray_direction_at(place)).xy + offset;
+    return base_sample.xy + ivec2(floor(vec2(relative.x, -relative.y) / spacing.xy + base_sample_fraction.xy));
+}
+
+#ifdef HOLES
+bool is_at_hole(vec2 place, float distance, mat2 foot) {
+    bool missing = false;
+    for (int i = 0; i < 4; ++i) {
+        vec2 corner = vec2(i & 1, i >> 1) - 0.5;
+        ivec2 first = sample_at(place, distance, foot * corner);
+        vec4 around = textureGather(heights, (vec2(first) + 1.0) / vec2(samples.xy));
+        missing = missing || any(lessThan(around, vec4(missing_height)));
+    }
+    return missing;
+}
+#endif
+
 #ifdef OVERLAY
 uniform sampler2D overlay_texture;
 uniform float farthest_at_borders;  // footprints
@@ -50,10 +74,7 @@ uniform usampler2D tile_levels;  // of detail, as drawn
 
 // Metres that the triangles at a pixel are long on the map.
 float cell_at(vec2 place, float distance) {
-    vec2 relative = (ray_origin_at(place) + distance * ray_direction_at(place)).xy;
-    ivec2 first = base_sample.xy + ivec2(floor(vec2(relative.x, -relative.y) / spacing.xy + base_sample_fraction.xy));
-    first = clamp(first, ivec2(0), samples.xy - 1);
-    const int tile_quads = 64;
+    ivec2 first = clamp(sample_at(place, distance, vec2(0.0)), ivec2(0), samples.xy - 1);
     return max(spacing.x, spacing.y) * float(1 << texelFetch(tile_levels, first / tile_quads, 0).r);
 }
 #endif
@@ -63,17 +84,21 @@ void main() {
     vec2 place = pixel_from_centre();
     vec4 surface = texelFetch(surface_texture, pixel, 0);
     bool sky = isinf(surface.z);
-    mat2 footprints_of_map = sky ? mat2(0.0) : inverse(footprint(place, surface.xy, surface.z));
+    float distance = sky ? 0.0 : surface.z;
+    mat2 foot = footprint(place, surface.xy, distance);
+    mat2 footprints_of_map = sky ? mat2(0.0) : inverse(foot);
     float most = farthest;
 #ifdef OVERLAY
     bool at_border = is_at_border(pixel);
     if (at_border) most = farthest_at_borders;
-    float distance = sky ? 0.0 : surface.z;
-    mat2 foot = footprint(place, surface.xy, distance);
     bool is_small = max(length(foot[0]), length(foot[1])) > smallest_facets * cell_at(place, distance);
     if (at_border && is_small) most = min(most, farthest_among_small);
 #endif
-    bool marked = false, is_silhouette = false;
+    bool is_silhouette = false;
+#ifdef HOLES
+    is_silhouette = !sky && is_at_hole(place, distance, foot);
+#endif
+    bool marked = is_silhouette;
     for (int i = 0; i < 4; ++i) {
         ivec2 neighbour = clamp(pixel + neighbours[i], ivec2(0), drawn_size - 1);
         vec4 beside = texelFetch(surface_texture, neighbour, 0);

@@ -1,9 +1,9 @@
 // What the samples of each gathered pixel see, or with RAYS what sixteen rays for them do.
 //
 // What a sample sees lies near what the pixel or a neighbour sees at its centre. So its ray is followed for a few cells
-// around the nearest of those places, then around the nearest of those that lie behind, and so on. Where it meets
-// nothing, the sample sees the sky if one of the neighbours does, or else the plane at the pixel's centre. Where ground
-// is seen at so flat an angle that a pixel spans many cells, the planes stand for it.
+// around the nearest of those places, then up to and around the nearest of those that lie behind, and so on. Where it
+// meets nothing, the sample sees the plane at the pixel's centre; the sky if a neighbour does, or where the plane is over
+// a hole. Where ground is seen at so flat an angle that a pixel spans many cells, the planes stand for it.
 //
 // RAMP   colours by height
 // RAYS   sixteen rays a pixel
@@ -25,6 +25,9 @@ const float cells_before = 1.0;
 #else
 const float cells_before = 2.0;
 #endif
+
+// As many behind what a ray passed, where ground may be seen that no centre sees.
+const float most_cells_between = 6.0;
 
 // What is seen at the centre of a pixel or a neighbour.
 struct Centre {
@@ -84,25 +87,37 @@ bool is_over_ground(vec3 relative) {
     return is_cell(cell.low) && is_solid(corners_of(cell), place.y > place.x);
 }
 
-// Looks where the surface that is seen at a pixel's centre would be.
-Sight look(vec2 pixel, Centre centre) {
+// Looks where the surface that is seen at a pixel's centre would be, and before it back to where it was looked last; if
+// there is none, a few cells on from there.
+Sight look(vec2 pixel, Centre centre, float last, bool first) {
     vec4 surface = centre.surface;
     vec3 origin = ray_origin_at(pixel);
     vec3 direction = ray_direction_at(pixel);
     float cell = max(spacing.x, spacing.y) / length(direction.xy);
     float reach = 1.5 * reach_of(pixel, surface);
     float on_plane = clamp(distance_to_plane(pixel, centre), surface.z - reach, surface.z + reach);
-    float from = max(min(surface.z, on_plane) - 0.25 * reach - cells_before * cell, base_offset.w);
+    float from = min(surface.z, on_plane) - 0.25 * reach - cells_before * cell;
     float until = max(surface.z, on_plane) + 0.25 * reach + cell;
-    bool from_below = dot(vec3(-surface.xy, 1.0), direction) > 0.0;
+    bool none = isinf(surface.z);
+    if (!first) from = none ? last : min(from, max(last, from - most_cells_between * cell));
+    if (none) until = last + most_cells_between * cell;
+    bool from_below = !none && dot(vec3(-surface.xy, 1.0), direction) > 0.0;
     Triangle met;
-    int found = march(origin, direction, from, until, from_below, met);
+    int found = march(origin, direction, max(from, base_offset.w), until, from_below, met);
     if (found == ground_met) {
         vec2 gradient = gradient_of(met);
         return Sight(true, gradient, distance_along_ray(met, gradient, origin, direction));
     }
-    bool stands_for_it = found == not_known && is_over_ground(origin + on_plane * direction);
+    bool stands_for_it = found == not_known && !none && is_over_ground(origin + on_plane * direction);
     return Sight(stands_for_it, surface.xy, stands_for_it ? on_plane : until);
+}
+
+// The plane at the pixel's centre stands for what is not found, but beside the sky and over a hole.
+Sight on_own_plane(vec2 pixel, ivec2 own_pixel, vec2 sample_offset) {
+    Centre own = Centre(texelFetch(surface_texture, own_pixel, 0), -sample_offset);
+    float distance = distance_to_plane(pixel, own);
+    bool is_ground = is_over_ground(ray_origin_at(pixel) + distance * ray_direction_at(pixel));
+    return Sight(is_ground && !is_beside_sky(own_pixel), own.surface.xy, distance);
 }
 
 void write_sky() {
@@ -117,18 +132,16 @@ void main() {
     vec2 sample_offset = gathered_offset();
     Sight sight = Sight(false, vec2(0.0), base_offset.w);
     int looks = 0;
-    bool more = true;
+    bool more;
     do {
         Centre next = nearest_beyond(sight.distance, own_pixel, sample_offset);
-        more = !sight.known && !isinf(next.surface.z);
-        if (more) sight = look(pixel, next);
+        more = !isinf(next.surface.z);
+        sight = look(pixel, next, sight.distance, looks == 0);
         ++looks;
-    } while (more && looks < most_looks);
-    Centre own = Centre(texelFetch(surface_texture, own_pixel, 0), -sample_offset);
-    if (!sight.known && is_beside_sky(own_pixel)) {
-        write_sky();
-    } else {
-        if (!sight.known) sight = Sight(true, own.surface.xy, distance_to_plane(pixel, own));
+    } while (!sight.known && more && looks < most_looks);
+    if (!sight.known) sight = on_own_plane(pixel, own_pixel, sample_offset);
+    if (sight.known)
         write_surface(pixel, sight.gradient, sight.distance);
-    }
+    else
+        write_sky();
 }

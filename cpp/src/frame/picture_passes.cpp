@@ -219,7 +219,7 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
         const gl::PassTimer timer(&timings_, "silhouettes");
         pixels =
             silhouettes_->find(targets_->seen.gbuffer, shows_layers() ? &targets_->seen.overlay : nullptr,
-                               facets(), piece.drawn, piece.shown, terrain_->levels(), programs_);
+                               facets(), piece.drawn, piece.shown, *terrain_, programs_);
     }
     silhouette_pixels_ += pixels.size();
     for (size_t first = 0; first < pixels.size(); first += Silhouettes::batch_size) {

@@ -64,9 +64,13 @@ Silhouettes::Silhouettes(int width, int height, bool has_overlay, const MemoryAc
 
 std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
                                         const Rectangle& drawn, const Rectangle& shown,
-                                        const gl::Texture2D& tile_levels, gl::ProgramLibrary& programs) {
-    gl::Program& program =
-        programs.get("silhouettes", overlay != nullptr ? gl::Flags{"OVERLAY"} : gl::Flags{});
+                                        const TerrainMesh& terrain, gl::ProgramLibrary& programs) {
+    gl::Flags flags;
+    if (overlay != nullptr)
+        flags.insert("OVERLAY");
+    if (terrain.has_holes())
+        flags.insert("HOLES");
+    gl::Program& program = programs.get("silhouettes", flags);
     marks_framebuffer_.bind();
     program.use();
     program.set("surface_texture", 0);
@@ -75,9 +79,13 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
         program.set("overlay_texture", 1);
         overlay->bind(1);
         program.set("tile_levels", 2);
-        tile_levels.bind(2);
+        terrain.levels().bind(2);
         program.set("farthest_at_borders",
                     facets == Facets::of_samples ? farthest_on_slopes : farthest_at_borders);
+    }
+    if (terrain.has_holes()) {
+        program.set("heights", 3);
+        terrain.heights().bind(3);
     }
     program.set("drawn_size", glm::ivec2(drawn.width, drawn.height));
     no_vertices_.bind();

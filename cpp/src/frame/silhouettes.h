@@ -15,6 +15,7 @@
 
 #include "decalgl/frame/picture_request.h"
 #include "frame/targets.h"
+#include "frame/terrain_mesh.h"
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "gl/vertex_array.h"
@@ -33,8 +34,8 @@ public:
     // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
     // that of the pixels' centres. overlay: none where creases are left alone.
     std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
-                               const Rectangle& drawn, const Rectangle& shown,
-                               const gl::Texture2D& tile_levels, gl::ProgramLibrary& programs);
+                               const Rectangle& drawn, const Rectangle& shown, const TerrainMesh& terrain,
+                               gl::ProgramLibrary& programs);
 
     static constexpr size_t batch_size = 8192;
     // Makes a batch of pixels the ones that programs with the flag GATHERED see.

@@ -25,6 +25,7 @@ public:
     // For rays that are followed over the terrain (terrain/march.glsl): the levels of detail of visible tiles, the
     // flags of the program, and its uniforms.
     void set_levels(const std::vector<VisibleTile>& tiles);
+    bool has_holes() const { return has_holes_; }
     const gl::Texture2D& heights() const { return heights_; }
     const gl::Texture2D& levels() const { return levels_; }
     gl::Flags ray_flags() const;
