@@ -33,6 +33,7 @@ from decalgl.report import (
     views,
 )
 from decalgl.report.part import Figure, Table, byte_count, number
+from decalgl.report.settings import Setting
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -207,6 +208,32 @@ def test_the_reference_may_look_at_the_seen_part_alone() -> None:
     )
     whole = reference.render_overlay(scene, camera, size, crop, samples=4)
     assert np.array_equal(reference.render_overlay(part, camera, size, crop, samples=4).rgba, whole.rgba)
+
+
+@pytest.mark.parametrize("view", ["overview", "oblique", "grazing"])
+def test_a_narrowed_camera_sees_the_middle_of_the_picture(view: str) -> None:
+    drawn = case_studies.build("floods", "tiny")
+    camera, size, crop = views.views(drawn)[view], (64, 36), (21, 8)
+    places = np.column_stack([drawn.parts[0].data.coords[:100], np.zeros(100)])
+    whole, depth = camera.project(places, size)
+    middle, same_depth = accuracy.narrowed(camera, size, crop).project(places, crop)
+    assert np.array_equal(depth, same_depth)
+    assert np.allclose(whole - middle, np.subtract(size, crop) / 2, rtol=1e-9, atol=1e-9, equal_nan=True)
+
+
+def test_the_middle_alone_is_judged_as_in_the_whole_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = case_studies.build("floods", "tiny")
+    judge = accuracy.Judge(drawn, {"close": views.views(drawn)["close"]}, (64, 36), (32, 18))
+    some = [
+        Setting("static", "coverage"),
+        Setting("static bvh", "none", "none", renderer={"index": dg.BvhIndex()}),
+        Setting("volume", "none", "none", dg.Volume(), dg.Volume()),
+    ]
+    alone = [judge.judge(setting)["close"] for setting in some]
+    monkeypatch.setattr(Setting, "looks_around", True)
+    for one, setting in zip(alone, some, strict=True):
+        assert judge.judge(setting)["close"] == pytest.approx(one, abs=1.01 / 255), setting.name
+    assert all(0.0 < one["edge_rms"] < 0.5 for one in alone)
 
 
 def test_floods_have_more_holes_than_areas() -> None:

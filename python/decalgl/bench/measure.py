@@ -60,17 +60,27 @@ def spread(values: list[float]) -> float:
     return (third - first) / (2.0 * middle)
 
 
-def drawing(renderer: dg.Renderer, camera: dg.Camera, antialias: str, name: str) -> Measure:
+def drawing(
+    renderer: dg.Renderer,
+    camera: dg.Camera,
+    antialias: str,
+    name: str,
+    look: Callable[[dg.Frame], None] = lambda _: None,
+) -> Measure:
     """Measures a frame: `name`_ms of the layers' passes, `name`_ground_ms of terrain and composing, and of the
     whole frame `name`_frame_ms. What silhouettes take is in the last alone.
+
+    look: is given each frame that was drawn.
     """
 
     def measure() -> Times:
-        passes = draw(renderer, camera, antialias).stats.passes
+        frame = draw(renderer, camera, antialias)
+        look(frame)
+        passes = frame.stats.passes
         centres = _before_silhouettes(passes)
         layers = sum(one["ms"] for one in centres if one["name"] in LAYER_PASSES)
-        frame = sum(one["ms"] for one in passes)
-        return {f"{name}_ms": layers, f"{name}_ground_ms": ground_ms(centres), f"{name}_frame_ms": frame}
+        whole = sum(one["ms"] for one in passes)
+        return {f"{name}_ms": layers, f"{name}_ground_ms": ground_ms(centres), f"{name}_frame_ms": whole}
 
     return measure
 

@@ -1,12 +1,14 @@
 """How far a technique's picture is from the reference: in a crop, of colours and of coverage.
 
-A picture over black ground and one over white tell colour and coverage of the layers, premultiplied. All samples of the
-terrain are drawn, so that its levels of detail count for nothing; what those do is told apart. Pixels that see the
-sky are left out.
+Only the crop is drawn, by a camera that sees no more, as a whole picture has sixty times as many pixels; but what looks
+at the rest of the picture too has it whole. A picture over black ground and one over white tell colour and coverage of
+the layers, premultiplied. All samples of the terrain are drawn, so that its levels of detail count for nothing; what
+those do is told apart. Pixels that see the sky are left out.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +17,6 @@ import numpy as np
 import decalgl as dg
 from decalgl import reference
 
-from ..bench.measure import LAYER_PASSES
 from .case_studies import GROUND
 from .settings import Setting
 
@@ -38,45 +39,40 @@ BY_DETAIL = Setting("static", "coverage")
 MOVED = 0.05  # by how much a pixel differs for which the ground's level of detail counts
 
 
-@dataclass(frozen=True)
-class Judged:
-    """Errors and bytes by the names of rows, and the picture of the layers over plain ground, (h, w, 3)."""
-
-    errors: Row
-    picture: NDArray[np.uint8]
-
-
 class Judge:
-    """Compares pictures of one map with the reference, from several cameras."""
+    """Compares pictures of one map with the reference, from several cameras.
+
+    size: of the pictures that the cameras are meant for. crop: (width, height) of what is compared, in the middle; by
+    whole pixels, so that both are even or both are odd.
+    """
 
     def __init__(self, drawn: Map, cameras: dict[str, dg.Camera], size: Size, crop: Size) -> None:
-        self._map, self._cameras, self._size = drawn, cameras, size
-        width, height = size
-        wide, high = crop
-        left, top = (width - wide) // 2, (height - high) // 2
-        self.crop: Crop = (left, top, left + wide, top + high)
+        self._map, self._cameras, self._size, self._crop = drawn, cameras, size, crop
+        self._near = {view: narrowed(camera, size, crop) for view, camera in cameras.items()}
         self._truth: dict[tuple[str, bool], Overlay] = {}
         self._renderers: dict[str, dg.Renderer] = {}
         self._scenes: dict[tuple[str, dg.Relief], dg.Scene] = {}  # of the techniques that were judged last
 
-    def judge(self, setting: Setting) -> dict[str, Judged]:
-        """The errors of a setting by view. Raises DecalError where it does not draw the map."""
+    def judge(self, setting: Setting) -> dict[str, Row]:
+        """The errors of a setting by view, by the names of rows. Raises DecalError where it does not draw the map."""
         setting = replace(setting, renderer={**ALL_SAMPLES, **setting.renderer})
-        over_black, held = self._drawn(setting, BLACK)
-        over_white, _ = self._drawn(setting, WHITE)
-        found = {}
-        for view in self._cameras:
-            errors, whole = self._compared(setting, view, over_black[view], over_white[view])
-            found[view] = Judged({**errors, "layers_bytes": held[view]}, _over_ground(whole))
-        return found
+        over_black, over_white = self._crops(setting, BLACK), self._crops(setting, WHITE)
+        return {
+            view: self._compared(setting, view, over_black[view], over_white[view]) for view in self._cameras
+        }
 
     def judge_ground(self) -> dict[str, Row]:
-        """By view, how far the layers are from where they lie on all samples of the terrain, by its level of detail."""
-        detail, _ = self._drawn(BY_DETAIL, BLACK, None)
-        every, _ = self._drawn(replace(BY_DETAIL, renderer=ALL_SAMPLES), BLACK, None)
+        """By view, how far the layers are from where they lie on all samples of the terrain, by its level of detail.
+
+        Of whole pictures.
+        """
+        every = replace(BY_DETAIL, renderer=ALL_SAMPLES)
+        detail, every_sample = (
+            self._drawn(setting, BLACK, self._cameras, self._size, None) for setting in (BY_DETAIL, every)
+        )
         found: dict[str, Row] = {}
         for view in self._cameras:
-            apart = np.abs(detail[view] - every[view])
+            apart = np.abs(detail[view] - every_sample[view])
             moved = (apart.max(axis=-1) > MOVED).mean()
             found[view] = {"ground_rms": float(np.sqrt((apart**2).mean())), "ground_moved": float(moved)}
         return found
@@ -85,21 +81,32 @@ class Judge:
         """The crop as the reference draws it, lines in metres."""
         return _over_ground(self._true(view, pixels=False).rgba)
 
+    def _crops(self, setting: Setting, relief: dg.Relief) -> dict[str, FloatArray]:
+        if not setting.looks_around:
+            return self._drawn(setting, relief, self._near, self._crop)
+        left, top = ((whole - part) // 2 for whole, part in zip(self._size, self._crop, strict=True))
+        middle = slice(top, top + self._crop[1]), slice(left, left + self._crop[0])
+        whole = self._drawn(setting, relief, self._cameras, self._size)
+        return {view: picture[middle] for view, picture in whole.items()}
+
     def _drawn(
-        self, setting: Setting, relief: dg.Relief, background: str | None = "sky"
-    ) -> tuple[dict[str, FloatArray], dict[str, int]]:
-        """The pictures by view, and how many bytes the layers held, prepared data and GL objects."""
+        self,
+        setting: Setting,
+        relief: dg.Relief,
+        cameras: dict[str, dg.Camera],
+        size: Size,
+        background: str | None = "sky",
+    ) -> dict[str, FloatArray]:
+        """The pictures by view."""
         key = repr(sorted(setting.renderer.items(), key=str))
-        renderer = self._renderers.setdefault(key, dg.Renderer(self._size, **setting.renderer))
-        renderer.set_picture(self._size, setting.antialias)
+        renderer = self._renderers.setdefault(key, dg.Renderer(size, **setting.renderer))
+        renderer.set_picture(size, setting.antialias)
         renderer.preprocess(self._scene(setting, relief))
-        pictures, held = {}, {}
-        for view, camera in self._cameras.items():
+        pictures = {}
+        for view, camera in cameras.items():
             renderer.update(camera)
-            frame = renderer.render(background=background)
-            pictures[view] = frame.image[..., :3] / 255.0
-            held[view] = sum(count for name, count in frame.stats.bytes.items() if name in LAYER_PASSES)
-        return pictures, held
+            pictures[view] = renderer.render(background=background).image[..., :3] / 255.0
+        return pictures
 
     def _scene(self, setting: Setting, relief: dg.Relief) -> dg.Scene:
         """Settings that follow each other often draw the same scenes."""
@@ -111,18 +118,13 @@ class Judge:
             }
         return self._scenes[techniques, relief]
 
-    def _compared(
-        self, setting: Setting, view: str, black: FloatArray, white: FloatArray
-    ) -> tuple[Row, FloatArray]:
-        """The errors, and colour and coverage of the whole picture."""
+    def _compared(self, setting: Setting, view: str, black: FloatArray, white: FloatArray) -> Row:
         alpha = 1.0 - (white - black).mean(axis=-1, keepdims=True)
-        whole = np.concatenate([black, alpha], axis=-1)
-        left, top, right, bottom = self.crop
         true = self._true(view, setting.pixels)
         found = reference.compare_overlay(
-            whole[top:bottom, left:right], true, ignore=true.terrain_fraction < 1.0
+            np.concatenate([black, alpha], axis=-1), true, ignore=true.terrain_fraction < 1.0
         )
-        errors: Row = {
+        return {
             "image_rms": found.image_rms,
             "image_max": found.image_maximum,
             "edge_rms": found.rms,
@@ -132,15 +134,25 @@ class Judge:
             "leak": found.leak,
             "partly_covered": found.partial / max(1, found.pixels),
         }
-        return errors, whole
 
     def _true(self, view: str, pixels: bool) -> Overlay:
         if (view, pixels) not in self._truth:
             scene = self._map.scene("auto", "auto", pixels)
-            camera = self._cameras[view]
-            near = seen_part(scene, camera, self._size, self.crop)
-            self._truth[view, pixels] = reference.render_overlay(near, camera, self._size, self.crop, SAMPLES)
+            camera, whole = self._near[view], (0, 0, *self._crop)
+            near = seen_part(scene, camera, self._crop, whole)
+            self._truth[view, pixels] = reference.render_overlay(near, camera, self._crop, whole, SAMPLES)
         return self._truth[view, pixels]
+
+
+def narrowed(camera: dg.Camera, size: Size, crop: Size) -> dg.Camera:
+    """The camera whose picture of the size `crop` is the middle of the picture that `camera` makes in `size`."""
+    camera = camera.for_size(size)
+    share = crop[1] / size[1]
+    if camera.fov is None:
+        assert camera.view_height is not None
+        return replace(camera, view_height=share * camera.view_height)
+    half = math.atan(share * math.tan(math.radians(camera.fov) / 2.0))
+    return replace(camera, fov=2.0 * math.degrees(half))
 
 
 @dataclass(frozen=True)

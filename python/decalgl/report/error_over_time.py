@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import decalgl as dg
 
-from ..bench.measure import drawing, floor, interleaved, timed
+from ..bench.measure import LAYER_PASSES, drawing, floor, interleaved, timed
 from ..errors import DecalError
 from . import choices, plots, views
 from .accuracy import MOVED, Judge
@@ -58,15 +58,8 @@ def _of_scene(context: Context, drawn: Map) -> list[Row]:
             by_key[setting.group, setting.name, ""] = {**words, "refused": str(error).split(". ")[0]}
             continue
         drawable.append(setting)
-        for view, one in judged.items():
-            name = f"{drawn.name} {view} {setting.group} {setting.name}"
-            picture = context.save_picture(name, one.picture)
-            by_key[setting.group, setting.name, view] = {
-                **words,
-                "view": view,
-                **one.errors,
-                "picture": picture,
-            }
+        for view, errors in judged.items():
+            by_key[setting.group, setting.name, view] = {**words, "view": view, **errors}
     for view in cameras:
         true = context.save_picture(f"{drawn.name} {view} reference", judge.true_picture(view))
         by_key["reference", "", view] = {
@@ -108,7 +101,13 @@ def _time(
             renderers[setting.prepared] = renderer
     for view, camera in cameras.items():
         measures = [
-            drawing(renderers[setting.prepared], camera, setting.antialias, f"{setting.group}/{setting.name}")
+            drawing(
+                renderers[setting.prepared],
+                camera,
+                setting.antialias,
+                f"{setting.group}/{setting.name}",
+                functools.partial(_keep, context, by_key[setting.group, setting.name, view]),
+            )
             for setting in batch
         ]
         floor_of_all = floor(renderers[batch[0].prepared])
@@ -123,6 +122,15 @@ def _time(
             row["frame"] = row["frame_ms"] / row["floor_ms"]
             row["layers"] = (row["frame_ms"] - times[f"{name}_ground_ms"]) / row["floor_ms"]
             row["prepare_ms"] = prepare[setting.prepared]
+
+
+def _keep(context: Context, row: Row, frame: dg.Frame) -> None:
+    """Saves the picture of the first frame, and tells how many bytes its layers held, prepared data and GL objects."""
+    if "picture" not in row:
+        name = " ".join(row[word] for word in ("scene", "view", "technique", "setting"))
+        row["picture"] = context.save_picture(name, frame.image)
+        held = frame.stats.bytes.items()
+        row["layers_bytes"] = sum(count for name, count in held if name in LAYER_PASSES)
 
 
 def figures(rows: Sequence[Row]) -> list[Figure]:

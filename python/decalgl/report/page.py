@@ -34,7 +34,7 @@ a { color: var(--link); }
 .soft { color: var(--soft); font-size: .9rem; overflow-wrap: anywhere; }
 nav { position: sticky; top: 0; background: var(--paper); border-bottom: 1px solid var(--line); z-index: 2;
       white-space: nowrap; overflow-x: auto; padding-top: .5rem; padding-bottom: .5rem; }
-nav a { margin-right: .8rem; font-size: .85rem; text-decoration: none; }
+nav a { margin-right: .55rem; font-size: .83rem; text-decoration: none; }
 .wide { overflow-x: auto; }
 .plot svg { display: block; width: 100%; min-width: 30rem; max-width: 56rem; height: auto; }
 .plot img { max-width: 100%; }

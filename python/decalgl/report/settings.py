@@ -38,6 +38,11 @@ class Setting:
         """What settings have in common that one preparing serves: all but the anti-aliasing."""
         return repr((self.polygons, self.lines, sorted(self.renderer.items(), key=str), self.pixels))
 
+    @property
+    def looks_around(self) -> bool:
+        """Whether how a place is drawn depends on what the picture shows elsewhere: detail, and where edges lead."""
+        return self.group in ("loops", "clipmap") or self.antialias == "fxaa"
+
 
 def settings(context: Context) -> list[Setting]:
     """Those that a report of this size compares."""
