@@ -223,17 +223,21 @@ def test_a_narrowed_camera_sees_the_middle_of_the_picture(view: str) -> None:
 
 def test_the_middle_alone_is_judged_as_in_the_whole_picture(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = case_studies.build("floods", "tiny")
-    judge = accuracy.Judge(drawn, {"close": views.views(drawn)["close"]}, (64, 36), (32, 18))
+    cameras = {name: views.views(drawn)[name] for name in ("close", "oblique")}
+    judge = accuracy.Judge(drawn, cameras, (64, 36), (32, 18))
     some = [
         Setting("static", "coverage"),
+        Setting("dynamic", "coverage", "coverage", "auto", dg.Dynamic(), pixels=True),
         Setting("static bvh", "none", "none", renderer={"index": dg.BvhIndex()}),
         Setting("volume", "none", "none", dg.Volume(), dg.Volume()),
     ]
-    alone = [judge.judge(setting)["close"] for setting in some]
+    alone = [judge.judge(setting) for setting in some]
     monkeypatch.setattr(Setting, "looks_around", True)
     for one, setting in zip(alone, some, strict=True):
-        assert judge.judge(setting)["close"] == pytest.approx(one, abs=1.01 / 255), setting.name
-    assert all(0.0 < one["edge_rms"] < 0.5 for one in alone)
+        whole = judge.judge(setting)
+        for view in cameras:
+            assert whole[view] == pytest.approx(one[view], abs=1.01 / 255), setting.name
+            assert 0.0 < one[view]["edge_rms"] < 0.5
 
 
 def test_floods_have_more_holes_than_areas() -> None:

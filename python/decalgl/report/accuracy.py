@@ -1,9 +1,9 @@
 """How far a technique's picture is from the reference: in a crop, of colours and of coverage.
 
-Only the crop is drawn, by a camera that sees no more, as a whole picture has sixty times as many pixels; but what looks
-at the rest of the picture too has it whole. A picture over black ground and one over white tell colour and coverage of
-the layers, premultiplied. All samples of the terrain are drawn, so that its levels of detail count for nothing; what
-those do is told apart. Pixels that see the sky are left out.
+Only the crop is drawn and a few pixels around it, by a camera that sees no more, as a whole picture has fifty times as
+many pixels; but what looks farther is drawn whole. A picture over black ground and one over white tell colour and
+coverage of the layers, premultiplied. All samples of the terrain are drawn, so that its levels of detail count for
+nothing; what those do is told apart. Pixels that see the sky are left out.
 """
 
 from __future__ import annotations
@@ -36,19 +36,22 @@ BLACK = dg.Relief(color="black", strength=0.0)
 WHITE = dg.Relief(color="white", strength=0.0)
 ALL_SAMPLES = {"terrain_error": 0.0}  # of the terrain
 BY_DETAIL = Setting("static", "coverage")
+MARGIN = 2  # pixels around the crop: creases of the ground are found by what is seen beside
 MOVED = 0.05  # by how much a pixel differs for which the ground's level of detail counts
 
 
 class Judge:
     """Compares pictures of one map with the reference, from several cameras.
 
-    size: of the pictures that the cameras are meant for. crop: (width, height) of what is compared, in the middle; by
-    whole pixels, so that both are even or both are odd.
+    size: of the pictures that the cameras are meant for. crop: (width, height) of what is compared, in the middle,
+    smaller by even counts.
     """
 
     def __init__(self, drawn: Map, cameras: dict[str, dg.Camera], size: Size, crop: Size) -> None:
+        assert all((whole - part) % 2 == 0 for whole, part in zip(size, crop, strict=True))
         self._map, self._cameras, self._size, self._crop = drawn, cameras, size, crop
-        self._near = {view: narrowed(camera, size, crop) for view, camera in cameras.items()}
+        self._near_size = (crop[0] + 2 * MARGIN, crop[1] + 2 * MARGIN)
+        self._near = {view: narrowed(camera, size, self._near_size) for view, camera in cameras.items()}
         self._truth: dict[tuple[str, bool], Overlay] = {}
         self._renderers: dict[str, dg.Renderer] = {}
         self._scenes: dict[tuple[str, dg.Relief], dg.Scene] = {}  # of the techniques that were judged last
@@ -82,12 +85,16 @@ class Judge:
         return _over_ground(self._true(view, pixels=False).rgba)
 
     def _crops(self, setting: Setting, relief: dg.Relief) -> dict[str, FloatArray]:
-        if not setting.looks_around:
-            return self._drawn(setting, relief, self._near, self._crop)
-        left, top = ((whole - part) // 2 for whole, part in zip(self._size, self._crop, strict=True))
-        middle = slice(top, top + self._crop[1]), slice(left, left + self._crop[0])
-        whole = self._drawn(setting, relief, self._cameras, self._size)
-        return {view: picture[middle] for view, picture in whole.items()}
+        whole = setting.looks_around
+        size = self._size if whole else self._near_size
+        left, top, right, bottom = self._middle(size)
+        pictures = self._drawn(setting, relief, self._cameras if whole else self._near, size)
+        return {view: picture[top:bottom, left:right] for view, picture in pictures.items()}
+
+    def _middle(self, size: Size) -> Crop:
+        """Where the crop is in a picture."""
+        left, top = ((whole - part) // 2 for whole, part in zip(size, self._crop, strict=True))
+        return left, top, left + self._crop[0], top + self._crop[1]
 
     def _drawn(
         self,
@@ -138,9 +145,11 @@ class Judge:
     def _true(self, view: str, pixels: bool) -> Overlay:
         if (view, pixels) not in self._truth:
             scene = self._map.scene("auto", "auto", pixels)
-            camera, whole = self._near[view], (0, 0, *self._crop)
-            near = seen_part(scene, camera, self._crop, whole)
-            self._truth[view, pixels] = reference.render_overlay(near, camera, self._crop, whole, SAMPLES)
+            camera, size = self._near[view], self._near_size
+            near = seen_part(scene, camera, size, self._middle(size))
+            self._truth[view, pixels] = reference.render_overlay(
+                near, camera, size, self._middle(size), SAMPLES
+            )
         return self._truth[view, pixels]
 
 

@@ -26,7 +26,7 @@ NOTE = (
     " against decalgl.reference, and the same on every run."
 )
 STEPS_KNOWN = ("tiny", "offline", "small", "medium", "large")
-# Of the full report there are 1500 pictures and 64 references: larger ones would make hours days.
+# Of the full report there are 1500 pictures and 56 references: larger ones would make hours days.
 PICTURE: dict[Size, tuple[int, int]] = {"tiny": (64, 36), "quick": (400, 225), "full": (640, 360)}
 # Smaller than the picture by even counts of pixels, so that it is its middle.
 CROP: dict[Size, tuple[int, int]] = {"tiny": (16, 8), "quick": (64, 37), "full": (80, 46)}

@@ -84,7 +84,8 @@ def _choices(results: Results) -> str:
     table = choices.figure(drawn).table
     assert table is not None
     scenes = dict.fromkeys(row["scene"] for row in drawn)
-    return f"{_lines(table)}\n\nOf the scenes {', '.join(scenes)}. {_origin(results, 'error_over_time')}"
+    among = f"Of what draws all of the scenes {', '.join(scenes)}; dynamic lines, those with lines."
+    return f"{_lines(table)}\n\n{among} {_origin(results, 'error_over_time')}"
 
 
 def _table(part: str, make: Callable[[Sequence[Row]], Table]) -> Callable[[Results], str]:
