@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._looks import COLOR_KEYWORDS, DecalState, LayerState, require_known
+from ._looks import COLOR_KEYWORDS, DecalState, LayerState, casing_sides, require_known
 from ._sources import Attributes
 from .coloring import resolve_colors
 from .errors import InputError, StyleError, UnsupportedError
@@ -210,12 +210,18 @@ def _extended(
     count = len(table)
     if attributes.count == 0:
         return state
-    decals = {}
+    decals: dict[str, DecalState] = {}
     main = "fill" if "fill" in state.decals else "stroke"
     for role, decal in state.decals.items():
         own = given if role == main else {}
         colors = _added_colors(state, decal, table, attributes, own)
-        widths = None if decal.widths is None else _added_widths(decal, table, attributes, own)
+        widths = None
+        if role == "casing":
+            line = decals["stroke"].widths
+            assert line is not None
+            widths = line[len(state.rows) :] + 2.0 * _same_for_all(casing_sides(state), len(table), "casings")
+        elif decal.widths is not None:
+            widths = _added_widths(decal, table, attributes, own)
         decals[role] = replace(
             decal,
             colors=np.concatenate([decal.colors, colors]),
@@ -254,14 +260,19 @@ def _added_colors(
     return np.tile(decal.colors[:1], (len(table), 1))
 
 
+def _same_for_all(widths: NDArray[np.float64], count: int, what: str) -> NDArray[np.float64]:
+    if count and len(widths) and np.ptp(widths) > 1e-9 * widths.max():
+        needed = "width=" if what == "lines" else "a layer of its own"
+        raise StyleError(f"the layer's {what} have several widths, so what is added needs {needed}.")
+    return np.full(count, widths[0] if len(widths) else 0.0)
+
+
 def _added_widths(
     decal: DecalState, table: FeatureTable, attributes: Attributes, given: Mapping[str, Any]
 ) -> NDArray[np.float64]:
     assert decal.widths is not None
     if "width" not in given:
-        if len(table) and (decal.widths != decal.widths[0]).any():
-            raise StyleError("the layer's lines have several widths, so what is added needs width=.")
-        return np.full(len(table), decal.widths[0] if len(decal.widths) else 0.0)
+        return _same_for_all(decal.widths, len(table), "lines")
     widths = attributes.numbers(given["width"], "width")[table.rows]
     most = decal.widest if decal.widest > 0.0 else np.inf
     if not ((widths > 0.0) & (widths <= most) & (widths < np.inf)).all():

@@ -238,16 +238,17 @@ def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
     where = None
     if "where" in given:
         where = rows_meant(given["where"], state.row_count, state.columns, name, "where")[state.rows]
-    decals = dict(state.decals)
-    main = "fill" if "fill" in decals else "stroke"
-    for role, wanted in _decal_keywords(state, main, given).items():
-        if wanted and role not in decals:
+    main = "fill" if "fill" in state.decals else "stroke"
+    every = {role: wanted for role, wanted in _decal_keywords(state, main, given).items() if wanted}
+    for role in every:
+        if role not in state.decals:
             raise UnsupportedError(
                 f"Layer {name!r} has no {role} that could look otherwise without preparing: it has none, or its"
                 " technique keeps looks as they were. Use technique='static'."
             )
-        if wanted:
-            decals[role] = _restyled_decal(state, decals[role], wanted, where)
+    decals = _restyled_widths(state, every, where)
+    for role, wanted in every.items():
+        decals[role] = _restyled_decal(state, decals[role], wanted, where)
     result = replace(state, decals=decals)
     if "visible" in given:
         shown = rows_meant(given["visible"], state.row_count, state.columns, name, "visible")[state.rows]
@@ -330,7 +331,7 @@ def _restyled_decal(
     if where is not None:
         # Rows that are marked are no part of what the legend explains.
         colors, coloring = np.where(where[:, None], colors, decal.colors), decal.coloring
-    decal = _restyled_width(state, replace(decal, colors=colors, coloring=coloring), wanted, where)
+    decal = replace(decal, colors=colors, coloring=coloring)
     if any(key in wanted for key in (*STROKE_STYLES, *FILL_STYLES)):
         decal = replace(decal, styles=_styles(state, decal, wanted, where))
     return decal
@@ -357,21 +358,55 @@ def _styles(
     return changed_strokes(decal.styles, wanted, rows, decal.widths, where)
 
 
+def _restyled_widths(
+    state: LayerState, every: Mapping[str, Mapping[str, Any]], where: NDArray[np.bool_] | None
+) -> dict[str, DecalState]:
+    """The decals with the widths that are wanted: a casing's on each side of the line, whatever that one's becomes."""
+    decals = dict(state.decals)
+    wanted = {role: own["width"] for role, own in every.items() if "width" in own}
+    for role in wanted.keys() - {"casing"}:
+        decal = decals[role]
+        if decal.widths is None:
+            raise StyleError("fills have no width. Leave width= out, or give it to outline=.")
+        widths = _restyled_width(state, decal.widths, wanted[role], where)
+        decals[role] = _as_wide(decal, widths)
+    if "casing" in decals and wanted:
+        casing, sides = decals["casing"], casing_sides(state)
+        if "casing" in wanted:
+            if isinstance(state.layer, Layer) and state.layer.casing and state.layer.casing.margins is not None:
+                raise UnsupportedError(
+                    "casings of lines whose widths have limits stay as wide as they are. Prepare the scene anew."
+                )
+            sides = _restyled_width(state, sides, wanted["casing"], where)
+        line = decals["stroke"].widths
+        assert line is not None
+        decals["casing"] = _as_wide(casing, line + 2.0 * sides)
+    return decals
+
+
+def casing_sides(state: LayerState) -> NDArray[np.float64]:
+    """How wide the layer's casings are on each side of their lines."""
+    line, casing = state.decals["stroke"].widths, state.decals["casing"].widths
+    assert line is not None
+    assert casing is not None
+    return 0.5 * (casing - line)
+
+
 def _restyled_width(
-    state: LayerState, decal: DecalState, wanted: Mapping[str, Any], where: NDArray[np.bool_] | None
-) -> DecalState:
-    if "width" not in wanted:
-        return decal
-    if decal.widths is None:
-        raise StyleError("fills have no width. Leave width= out, or give it to outline=.")
-    widths = _widths(state, wanted["width"])
+    state: LayerState, before: NDArray[np.float64], width: Any, where: NDArray[np.bool_] | None
+) -> NDArray[np.float64]:
+    widths = _widths(state, width)
     if where is not None:
-        widths = np.where(where, widths, decal.widths)
+        widths = np.where(where, widths, before)
     wrong = np.flatnonzero(~((widths >= 0.0) & (widths < np.inf)))
     if wrong.size:
         raise StyleError(
             f"row {state.rows[wrong[0]]}: width {widths[wrong[0]]:g} is no length. Give metres, 0 or more."
         )
+    return widths
+
+
+def _as_wide(decal: DecalState, widths: NDArray[np.float64]) -> DecalState:
     if decal.widest > 0.0 and (widths > decal.widest).any():
         raise StyleError(
             f"a width of {widths.max():g} m is more than the {decal.widest:g} m that it was prepared for. Make"

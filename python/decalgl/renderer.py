@@ -200,7 +200,8 @@ class Renderer:
         color, column, cmap, vmin, vmax, norm, alpha, categorical, missing_kwds: colours, as in
             `Scene.add_polygons`; of the fills of polygons or the strokes of lines. cmap= and vmin= ... without
             column= colour by the column of before.
-        width: metres, one or one a row, up to the `widest` that the layer was made with.
+        width: metres, one or one a row, up to the `widest` that the layer was made with. Casings keep what they show on
+            each side, and patterns their lengths.
         visible: which features are there: True or False, one a row, an expression by column such as
             "kind == 'primary' and lanes >= 2", or a function that takes the columns and gives one a row.
         opacity: a factor on what is seen, 0 to 1: one, one a row, or {category: factor} by the column `by`,

@@ -23,7 +23,8 @@ from changed_scenes import (
     some_areas,
     some_ways,
 )
-from small_scenes import MAP, SIZE
+from decalgl.errors import StyleError
+from small_scenes import MAP, SIZE, hilly_scene
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,6 +93,63 @@ def test_a_restyled_casing_is_that_of_a_scene_prepared_so(name: str, antialias: 
     expected = prepared(scene_of(PLAIN, cased(**{**color, **restyle})), antialias, index=index).render()
     assert_same(after, expected)
     assert (after.image != before.image).any()
+
+
+def cased_ways(width: float, sides: Any = 2.0) -> dg.Scene:
+    """Ways that may become 7 m wide, with 2 m of casing at most on each side."""
+    scene = hilly_scene(1000.0)
+    casing = dg.Casing(width=sides, color="navy")
+    scene.add_lines(
+        some_ways(), name="ways", color="white", width=width, width_units="m", widest=7.0, casing=casing
+    )
+    return scene
+
+
+SIDES = [2.0, 0.5] * 15
+
+
+@EVERY_WAY
+@pytest.mark.parametrize(
+    ("restyle", "expected"),
+    [
+        ({"width": 6.0}, cased_ways(6.0)),
+        ({"casing": {"width": SIDES}}, cased_ways(3.0, SIDES)),
+        ({"width": 5.0, "casing": {"width": SIDES, "color": "navy"}}, cased_ways(5.0, SIDES)),
+    ],
+    ids=["of lines", "of casings", "of both"],
+)
+def test_casings_are_as_wide_on_each_side_as_their_lines_change(
+    restyle: dict[str, Any], expected: dg.Scene, antialias: str, index: str
+) -> None:
+    """Also in a lens."""
+    picture = prepared(expected, antialias, index=index).render()
+    renderer = prepared(cased_ways(3.0), antialias, index=index)
+    before = renderer.render()
+    renderer.restyle("ways", **restyle)
+    assert_same(renderer.render(), picture)
+    assert (picture.image != before.image).any()
+    lensed = prepared(cased_ways(3.0), antialias, index=index)
+    lensed.lens = dg.Lens(circle=(SIZE[0] / 2, SIZE[1] / 2, 4.0 * max(SIZE)), styles={"ways": restyle})
+    assert_same(lensed.render(), picture)
+
+
+@EVERY_INDEX
+def test_what_is_added_to_wider_lines_is_cased_as_they_are(index: str) -> None:
+    added = shapely.LineString([(15, 15), (80, 35)])
+    frames = []
+    for renderer in (prepared(cased_ways(6.0), index=index), prepared(cased_ways(3.0), index=index)):
+        renderer.restyle("ways", width=6.0)
+        renderer.edit("ways", add=[added])
+        frames.append(renderer.render())
+    assert_same(*frames)
+
+
+@EVERY_INDEX
+def test_a_casing_wider_than_prepared_is_refused(index: str) -> None:
+    renderer = prepared(cased_ways(3.0), index=index)
+    renderer.restyle("ways", casing={"width": 4.0})
+    with pytest.raises(StyleError, match="a width of 12 m is more than the 11 m"):
+        renderer.restyle("ways", casing={"width": 4.5})
 
 
 @EVERY_INDEX

@@ -308,3 +308,26 @@ def far_dashes() -> View:
     ]
     styled(scene, "lines", features, stroke=stroke(8, 3.0, tints(8, 28), styles))
     return above(scene, x, y)
+
+
+@named
+def touching_parts() -> View:
+    """Parts of a line that begin where the one before ends, at it and on it: both have ends there, and no corner."""
+    scene = flat_ground()
+    places = grid(6, 3)
+    parts = [
+        np.array([(-9.0, -8.0), (1.0, -5.0), (0.0, 0.0)]),
+        np.array([(0.0, 0.0), (9.0, 3.0)]),
+        np.array([(9.0, 3.0), (2.0, 9.0), (-8.0, 4.0), (0.0, 0.0)]),
+        np.array([(0.0, 0.0), (-8.0, 0.0)]),
+    ]
+    features = [[places[row, column] + part for part in parts] for row in range(3) for column in range(6)]
+    patterns = (None, dashes(5.0, (0.0, 3.0)))
+    styles = [
+        StrokeStyle(corner, cap, pattern=pattern)
+        for pattern in patterns
+        for corner in CORNERS
+        for cap in CAPS
+    ]
+    styled(scene, "lines", features, stroke=stroke(18, 4.0, tints(18, 29, 0.5), styles))
+    return above(scene)

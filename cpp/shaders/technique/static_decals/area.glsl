@@ -72,8 +72,7 @@ uvec2 crossing_mask(Crossing crossing) {
 uint read_point(inout Group group, uint word) {
 #ifdef PATTERNS
     if (group.pen.awaits_phase) {
-        group.pen.periods = float(word) / float(PHASE_ONE);
-        group.pen.awaits_phase = false;
+        read_phase(group.pen, word);
         return for_none;
     }
 #endif

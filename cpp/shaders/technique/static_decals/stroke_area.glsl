@@ -104,10 +104,7 @@ uint alike_in_styled(Group group, vec2 from, vec2 to) {
 uint next_alike(inout Group group, uint word, vec2 from, vec2 to) {
     vec2 point = point_of(word);
     bool starts = starts_edge(word);
-    if (starts) {
-        if (point != group.last) group.pen = lifted_pen;
-        group.pen.awaits_phase = has(group.style, STYLE_PATTERN);
-    }
+    if (starts) move_pen(group.pen, group.style, point == group.last);
     group.run = starts ? 0.0 : distance(point, group.last);
     group.last = point;
     group.pen_before = group.pen;

@@ -13,9 +13,9 @@
 // plain strokes and fills. The miter limit is the cosine of the largest turn that is still mitred.
 //
 // Lines whose corners and ends are not all round are JOINED: an edge is a bar alone; between two edges that follow each other there
-// is a corner; an edge of no length is a disc. Where it has a pattern, a word follows each MOVE: how far along the period
-// it is, as a fraction of PHASE_ONE. A MOVE to where the run has come to keeps the corner there: where a ring closes, the
-// pattern begins anew.
+// is a corner; an edge of no length is a disc; a MOVE lifts the pen, even to where the run has come to. Where it has a pattern,
+// a word follows each MOVE: how far along the period it is, as a fraction of PHASE_ONE. There a MOVE to where the run has come to
+// keeps the corner, as the pattern begins anew where a ring closes, unless PHASE_LIFTS is set: another part of the line begins.
 //
 //     plain    MOVE a   b    c          joined   MOVE a   a    b    c          with a pattern   MOVE a   phase   b    c
 //              (a====(b====(c                    (a)  a====b<c====c
@@ -26,7 +26,8 @@
 #define SCALE_MASK 63u
 #define BANDS_SHIFT 8
 #define COUNT_BITS_OF_MARKS 0xFFu
-#define PHASE_ONE 1073741824  // 2^30
+#define PHASE_ONE 536870912  // 2^29
+#define PHASE_LIFTS 0x20000000u
 
 #define STYLE_JOINED 1u
 #define STYLE_MITER 2u  // else, where joined: bevel if set below, else round

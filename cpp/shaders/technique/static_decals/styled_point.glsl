@@ -102,10 +102,7 @@ void open_group(inout Walk walk, uint header) {
 void read_stroke(inout Walk walk, vec2 point, bool starts) {
     vec2 to = walk.metric * (walk.at - point);
     bool joined = has(walk.style, STYLE_JOINED);
-    if (starts) {
-        if (point != walk.last) walk.pen = lifted_pen;
-        walk.pen.awaits_phase = has(walk.style, STYLE_PATTERN);
-    }
+    if (starts) move_pen(walk.pen, walk.style, point == walk.last);
     vec2 from = starts ? to : walk.from;
     float run = starts ? 0.0 : distance(point, walk.last);
     float share = starts && joined ? not_covered : stroke_share(walk.style, walk.pen, from, to, run);
@@ -121,8 +118,7 @@ void read_word(inout Walk walk, uint word) {
         return;
     }
     if (walk.pen.awaits_phase) {
-        walk.pen.periods = float(word) / float(PHASE_ONE);
-        walk.pen.awaits_phase = false;
+        read_phase(walk.pen, word);
         return;
     }
     vec2 point = point_of(word);

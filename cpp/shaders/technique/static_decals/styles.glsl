@@ -77,6 +77,19 @@ struct Pen {
 
 const Pen lifted_pen = Pen(vec2(0.0), false, false, 0.0);
 
+// At a MOVE: whether the point is where the run has come to.
+void move_pen(inout Pen pen, Style style, bool stays) {
+    bool patterned = has(style, STYLE_PATTERN);
+    if (!stays || !patterned) pen = lifted_pen;
+    pen.awaits_phase = patterned;
+}
+
+void read_phase(inout Pen pen, uint word) {
+    if ((word & PHASE_LIFTS) != 0u) pen = lifted_pen;
+    pen.periods = float(word & (uint(PHASE_ONE) - 1u)) / float(PHASE_ONE);
+    pen.awaits_phase = false;
+}
+
 // `run`: the edge's length on the map, in units.
 void move_on(inout Pen pen, Style style, vec2 from, vec2 to, float run) {
     vec2 goes = from - to;

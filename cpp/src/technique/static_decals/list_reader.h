@@ -96,7 +96,8 @@ private:
 
     void read_point(uint32_t word) {
         if (awaits_phase_) {
-            periods_ = static_cast<double>(word) / PHASE_ONE;
+            has_incoming_ = has_incoming_ && (word & PHASE_LIFTS) == 0;
+            periods_ = static_cast<double>(word & (PHASE_ONE - 1)) / PHASE_ONE;
             awaits_phase_ = false;
             return;
         }
@@ -109,8 +110,8 @@ private:
         } else if (!style_.is(STYLE_JOINED)) {
             add_capsule(measured(moves ? to : from_), measured(to));
         } else if (moves) {
-            has_incoming_ = has_incoming_ && to.x == from_.x && to.y == from_.y;
             awaits_phase_ = style_.is(STYLE_PATTERN);
+            has_incoming_ = has_incoming_ && awaits_phase_ && to.x == from_.x && to.y == from_.y;
         } else {
             add_joined_edge(to);
         }

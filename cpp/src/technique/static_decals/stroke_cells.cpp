@@ -42,9 +42,10 @@ double length_of(LatticePoint a, LatticePoint b) {
     return std::hypot(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y));
 }
 
-uint32_t phase_of(double periods) {
+uint32_t phase_of(double periods, bool begins) {
     const double fraction = periods - std::floor(periods);
-    return std::min(static_cast<uint32_t>(fraction * PHASE_ONE), uint32_t{PHASE_ONE - 1});
+    return std::min(static_cast<uint32_t>(fraction * PHASE_ONE), uint32_t{PHASE_ONE - 1}) |
+           (begins ? PHASE_LIFTS : 0U);
 }
 
 // The end that a square cap moves outwards.
@@ -110,22 +111,24 @@ void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeE
         const auto arm = static_cast<int64_t>(std::lrint(radius));
         const LatticePoint at = points[0];
         if (round)
-            on_disc(at, ends.periods);
+            on_disc(at, ends.periods, true);
         else if (square)
             on_edge(Edge{{at.x - arm, at.y},
                          {at.x + arm, at.y},
-                         ends.periods - radius * shape_->periods_per_quantum},
+                         ends.periods - radius * shape_->periods_per_quantum,
+                         false,
+                         true},
                     2.0 * radius);
         return;
     }
     double periods = ends.periods;
     if (ends.begins && round)
-        on_disc(points[0], periods);
+        on_disc(points[0], periods, true);
     for (size_t i = 1; i <= last; ++i) {
-        Edge edge{points[i - 1], points[i], periods, i == 1 && !ends.begins};
+        const bool begins = i == 1 && ends.begins, finishes = i == last && ends.ends;
+        Edge edge{points[i - 1], points[i], periods, i == 1 && !ends.begins, begins};
         periods += length_of(edge.a, edge.b) * shape_->periods_per_quantum;
         double reach = radius;
-        const bool begins = i == 1 && ends.begins, finishes = i == last && ends.ends;
         if (!begins)
             reach = std::max(reach, shape_->reach_near(i == 1 ? ends.before : points[i - 2], edge.a, edge.b));
         if (!finishes)
@@ -140,7 +143,7 @@ void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeE
         on_edge(edge, reach);
     }
     if (ends.ends && round)
-        on_disc(points[last], periods);
+        on_disc(points[last], periods, false);
 }
 
 void StrokeCells::add_joined(Span<const LatticePoint> points, const StrokeEnds& ends) {
@@ -150,9 +153,9 @@ void StrokeCells::add_joined(Span<const LatticePoint> points, const StrokeEnds& 
             for_each_square_near(edge.a, edge.b, static_cast<int64_t>(std::ceil(reach)), cells_,
                                  [&](int64_t column, int64_t row) { add_edge(edge, column, row); });
         },
-        [&](LatticePoint at, double periods) {
+        [&](LatticePoint at, double periods, bool begins) {
             for_each_square_near(at, at, reach_, cells_, [&](int64_t column, int64_t row) {
-                add_disc(at, periods, lists_->cell_at(column, row), column, row);
+                add_disc(at, periods, begins, lists_->cell_at(column, row), column, row);
             });
         });
 }
@@ -166,14 +169,15 @@ void StrokeCells::mark_touched_cells(Span<const LatticePoint> points, const Stro
     if (shape_->is_joined) {
         for_each_joined(
             points, ends, [&](const Edge& edge, double reach) { mark(edge.a, edge.b, reach); },
-            [&](LatticePoint at, double) { mark(at, at, shape_->half_width); });
+            [&](LatticePoint at, double, bool) { mark(at, at, shape_->half_width); });
         return;
     }
     for (size_t i = 0; i < points.size(); ++i)
         mark(points[i == 0 ? 0 : i - 1], points[i], shape_->half_width);
 }
 
-void StrokeCells::add_disc(LatticePoint at, double periods, uint32_t cell, int64_t column, int64_t row) {
+void StrokeCells::add_disc(LatticePoint at, double periods, bool begins, uint32_t cell, int64_t column,
+                           int64_t row) {
     if (!shows_in(cell) || (covers_cells_ && lists_->is_covered(cell, slot_)))
         return;
     const double unit = std::ldexp(1.0, -shape_->scale), origin = cell_bias(lists_->level());
@@ -182,7 +186,9 @@ void StrokeCells::add_disc(LatticePoint at, double periods, uint32_t cell, int64
     static constexpr double most = COORDINATE_MASK;
     if (!(x >= 0.0 && x <= most && y >= 0.0 && y <= most))
         return;
-    const uint32_t phase = phase_of(periods);
+    if (begins)
+        lists_->lift_pen(cell, slot_);
+    const uint32_t phase = phase_of(periods, begins);
     lists_->add_disc(cell, slot_,
                      word_of(static_cast<uint32_t>(std::lrint(x)), static_cast<uint32_t>(std::lrint(y))),
                      shape_->periods_per_quantum > 0.0 ? &phase : nullptr);
@@ -194,14 +200,14 @@ void StrokeCells::add_edge(const Edge& edge, int64_t column, int64_t row) {
     if (!shows_in(cell) || (covers_cells_ && lists_->is_covered(cell, slot_)))
         return;
     const bool patterned = shape_->periods_per_quantum > 0.0;
-    if (patterned && edge.restarts)
+    if (edge.begins || (patterned && edge.restarts))
         lists_->lift_pen(cell, slot_);
     const int64_t bias = cell_bias(lists_->level());
     const int64_t left = cells_.border(column), bottom = cells_.border(row);
     const int64_t x0 = a.x - left + bias, y0 = a.y - bottom + bias, x1 = b.x - left + bias,
                   y1 = b.y - bottom + bias;
     if (shape_->scale == 0 && ((x0 | y0 | x1 | y1) & ~int64_t{COORDINATE_MASK}) == 0) {
-        const uint32_t phase = patterned ? phase_of(edge.periods) : 0;
+        const uint32_t phase = patterned ? phase_of(edge.periods, edge.begins) : 0;
         lists_->add_edge(cell, slot_, LINE, word_of(static_cast<uint32_t>(x0), static_cast<uint32_t>(y0)),
                          word_of(static_cast<uint32_t>(x1), static_cast<uint32_t>(y1)),
                          patterned ? &phase : nullptr);
@@ -226,7 +232,9 @@ void StrokeCells::add_edge(const Edge& edge, int64_t column, int64_t row) {
         return word_of(along(ax, bx), along(ay, by));
     };
     const uint32_t phase =
-        patterned ? phase_of(edge.periods + kept.first * length_of(a, b) * shape_->periods_per_quantum) : 0;
+        patterned
+            ? phase_of(edge.periods + kept.first * length_of(a, b) * shape_->periods_per_quantum, edge.begins)
+            : 0;
     lists_->add_edge(cell, slot_, LINE, word_at(kept.first), word_at(kept.last),
                      patterned ? &phase : nullptr);
 }

@@ -42,10 +42,11 @@ private:
         LatticePoint a, b;
         double periods;         // at a
         bool restarts = false;  // the pattern goes on from another place
+        bool begins = false;    // no corner leads to it
     };
 
     void add_joined(Span<const LatticePoint> points, const StrokeEnds& ends);
-    void add_disc(LatticePoint at, double periods, uint32_t cell, int64_t column, int64_t row);
+    void add_disc(LatticePoint at, double periods, bool begins, uint32_t cell, int64_t column, int64_t row);
     void add_edge(const Edge& edge, int64_t column, int64_t row);
     bool shows_in(uint32_t cell) const { return open_ == nullptr || (*open_)[cell] != 0; }
 
