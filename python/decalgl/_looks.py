@@ -373,7 +373,11 @@ def _restyled_widths(
     if "casing" in decals and wanted:
         casing, sides = decals["casing"], casing_sides(state)
         if "casing" in wanted:
-            if isinstance(state.layer, Layer) and state.layer.casing and state.layer.casing.margins is not None:
+            if (
+                isinstance(state.layer, Layer)
+                and state.layer.casing
+                and state.layer.casing.margins is not None
+            ):
                 raise UnsupportedError(
                     "casings of lines whose widths have limits stay as wide as they are. Prepare the scene anew."
                 )

@@ -63,7 +63,15 @@ def figures(rows: Sequence[Row]) -> list[Figure]:
 
 def table(rows: Sequence[Row]) -> Table:
     """A line for each scene and step."""
-    columns = ("scene", "step", "vertices", "made in", "prepared in", "layers, with coverage", "peak of memory")
+    columns = (
+        "scene",
+        "step",
+        "vertices",
+        "made in",
+        "prepared in",
+        "layers, with coverage",
+        "peak of memory",
+    )
     return Table(columns, [_cells(row) for row in rows])
 
 
