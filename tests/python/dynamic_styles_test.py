@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,9 @@ from shapely import LineString, Polygon, box
 import decalgl as dg
 from decalgl import reference as ref
 from small_scenes import OBLIQUE, SIZE, flat_scene, hilly_scene
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+Mask = np.ndarray[Any, np.dtype[np.bool_]]
 
 SMALL = (96, 64)
 ACROSS = LineString([(-50, 50), (150, 50)])
@@ -163,3 +167,37 @@ def test_wide_lines_in_thousands_of_tiles_are_whole() -> None:
         camera = dg.Camera.top_down((0, 0, 100, 100))
         pictures.append(scene.render(camera, (200, 200), "none", terrain_error=0.0).ids)
     assert (pictures[0] == pictures[1]).all()
+
+
+def stroke_with_flat_ends(places: Array, line: LineString, half_width: float, longer: float) -> Mask:
+    """Which places a stroke with round corners covers; its ends are so much longer."""
+    points = np.asarray(line.coords)
+    covered = np.zeros(places.shape[:-1], np.bool_)
+    for i, (a, b) in enumerate(itertools.pairwise(points)):
+        way = (b - a) / np.linalg.norm(b - a)
+        along, across = (places - a) @ way, np.abs((places - a) @ np.array([-way[1], way[0]]))
+        begin = -longer if i == 0 else 0.0
+        end = np.linalg.norm(b - a) + (longer if i == len(points) - 2 else 0.0)
+        covered |= (along >= begin) & (along <= end) & (across <= half_width)
+    for corner in points[1:-1]:
+        covered |= np.linalg.norm(places - corner, axis=-1) <= half_width
+    return covered
+
+
+@pytest.mark.parametrize("technique", [dg.Dynamic(), dg.Dynamic(method="lists")], ids=["tiles", "lists"])
+@pytest.mark.parametrize(
+    "points", [[(20, 20), (60, 30)], [(21, 70), (58, 31), (61, 27)]], ids=["straight", "bent"]
+)
+def test_flat_ends_are_flat_wherever_the_ground_cuts_a_line(technique: dg.Dynamic, points: Any) -> None:
+    """Ground with samples a metre apart, under a line ten metres wide."""
+    scene = dg.Scene(dg.Terrain(np.zeros((101, 101), np.float32), 0.0, 100.0, 1.0, 1.0))
+    line = LineString(points)
+    scene.add_lines([line], technique=technique, width=16, corner="round", cap="butt")
+    frame = scene.render(dg.Camera.top_down((0, 0, 100, 100)), (160, 160), "none", terrain_error=0.0)
+    places = frame.world[..., :2]
+    # A tenth of a pixel may be off.
+    least, most = (stroke_with_flat_ends(places, line, 5.0 + by, by) for by in (-0.0625, 0.0625))
+    assert (frame.ids >= 0)[least].all()
+    assert not (frame.ids >= 0)[~most].any()
+    for x, y in itertools.product(range(80, 110, 2), repeat=2):
+        assert bool(frame.pick(x, y)) == (frame.ids[y, x] >= 0) or most[y, x] != least[y, x]

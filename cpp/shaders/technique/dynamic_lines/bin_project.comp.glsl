@@ -69,6 +69,7 @@ void main() {
     uint slot = line.slot;
     uint flags = (begins ? SEGMENT_BEGINS : 0u) | (ends ? SEGMENT_ENDS : 0u);
     if (!ends && turns(b - a, after - b)) flags |= SEGMENT_TURNS;
+    if (!begins && turns(a - map_place(vertex_at(segment.x)), b - a)) flags |= SEGMENT_TURNED;
     if ((line.flags & LINE_INSIDE_RIGHT) != 0u) flags |= SEGMENT_INSIDE_RIGHT;
 
     ProjectedSegment seen = project(ground_place(from), ground_place(to));

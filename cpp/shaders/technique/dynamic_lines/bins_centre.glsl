@@ -62,7 +62,7 @@ bool is_hit(SeenSegment seen, LineLook look, float whole) {
     if (look.pattern != NO_PATTERN) marks = widths_along(seen.phases, share_on_map(seen.segment, share).x);
 #endif
     LinePart part = LinePart(seen.segment.from, seen.segment.to, seen.direction, seen.outgoing, begins(seen), finishes(seen),
-                             marks);
+                             (seen.flags & SEGMENT_TURNED) != 0u, (seen.flags & SEGMENT_TURNS) != 0u, marks);
     return decides(part, share) && covers(part, look, whole);
 }
 

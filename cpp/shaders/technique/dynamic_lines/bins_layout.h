@@ -18,6 +18,7 @@
 #define SEGMENT_ENDS 2u
 #define SEGMENT_TURNS 4u         // at its end so much that the gap to the next one shows
 #define SEGMENT_INSIDE_RIGHT 8u  // of a ring: its polygon lies to the right
+#define SEGMENT_TURNED 16u       // where it begins, as it does at its end
 //     arcs    of lines with patterns: where it begins along them, and how long it is (line_patterns.glsl)
 
 #endif

@@ -14,12 +14,20 @@ struct LinePart {
     vec2 outgoing;
     bool begins;
     bool ends;
+    bool turned;  // at its beginning, and at its end: else it goes straight on there, as where the line was cut
+    bool turns;
     vec3 marks;  // shares of the width that the pattern leaves: at the point's foot and at both ends; below 0: none
 };
 
 vec2 unit_vector(vec2 way) {
     float across = length(way);
     return across > 1e-9 ? way / across : vec2(1.0, 0.0);
+}
+
+// Of unit vectors.
+bool turns(vec2 before, vec2 after) {
+    const float least_turn = 0.01;  // sine
+    return dot(before, after) <= 0.0 || abs(cross_product(before, after)) > least_turn;
 }
 
 float distance_to_part(LinePart part) {
@@ -53,6 +61,9 @@ bool covers(LinePart part, LineLook look, float whole) {
                                 : corner_reach(corner, -part.from, part.incoming, direction, limit);
     float at_to = part.ends ? cap_reach(cap, -part.to)
                             : corner_reach(corner, -part.to, direction, part.outgoing, limit);
+    // A round corner reaches beyond a flat end that is near, but a place where the line was cut does not.
+    if (!part.begins && !part.turned) at_from = out_of_reach;
+    if (!part.ends && !part.turns && dot(part.to, direction) > 0.0) at_to = out_of_reach;
 #ifdef STYLED
     if (look.pattern != NO_PATTERN) {
         // Joints fill the gap between bars alone, so that marks end flat.

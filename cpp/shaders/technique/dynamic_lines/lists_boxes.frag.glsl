@@ -66,8 +66,10 @@ PixelPart pixel_part(vec2 pixel, ScreenPlane plane, LineLook look) {
     vec4 at = part_ends - plane.place.xyxy;
     vec2 way = at.zw - at.xy;
     float share = -dot(at.xy, way) / max(dot(way, way), 1e-12);
-    LinePart part = LinePart(at.xy, at.zw, unit_vector(part_ends.xy - part_joints.xy),
-                             unit_vector(part_joints.zw - part_ends.zw), begins(), ends(),
+    vec2 direction = unit_vector(way);
+    vec2 incoming = unit_vector(part_ends.xy - part_joints.xy), outgoing = unit_vector(part_joints.zw - part_ends.zw);
+    LinePart part = LinePart(at.xy, at.zw, incoming, outgoing, begins(), ends(),
+                             turns(incoming, direction), turns(direction, outgoing),
                              marks_at(look, share, pixels_per_metre));
     return PixelPart(part, share, half_width, true);
 }
@@ -93,10 +95,13 @@ PixelPart pixel_part(vec2 pixel, ScreenPlane plane, LineLook look) {
     ScreenSegment segment = on_screen(plane, part_ends);
     float share = foot_share(segment);
     vec2 outgoing = direction_on_screen(plane, vec4(part_ends.zw, part_joints.zw));
-    LinePart part = LinePart(segment.from, segment.to, vec2(0.0), outgoing, begins(), ends(),
+    vec2 direction = unit_vector(segment.to - segment.from);
+    LinePart part = LinePart(segment.from, segment.to, vec2(0.0), outgoing, begins(), ends(), false,
+                             turns(direction, outgoing),
                              marks_at(look, share_on_map(segment, share).x, plane.pixels_per_metre));
 #if defined(JOINED) || defined(SIDES)
     part.incoming = direction_on_screen(plane, vec4(part_joints.xy, part_ends.xy));
+    part.turned = turns(part.incoming, direction);
 #endif
     return PixelPart(part, share, half_width, segment.seen && is_on_ground(plane, segment, part_ends, half_width));
 }

@@ -121,6 +121,19 @@ private:
         return false;
     }
 
+    // Of unit vectors.
+    static bool turns(Vector2 before, Vector2 after) {
+        constexpr double least_turn = 0.01;  // sine
+        return dot(before, after) <= 0.0 || std::abs(before.x * after.y - before.y * after.x) > least_turn;
+    }
+
+    // On the map; of a closed line from its last segment to its first one, too.
+    Vector2 way(const LineRecord& line, uint32_t segment) const {
+        const uint32_t from = segment % (line.count - 1);
+        const Vector2 a = offset(line, from), b = offset(line, from + 1);
+        return unit({b.x - a.x, b.y - a.y});
+    }
+
     bool covers(const LineRecord& line, uint32_t segment, double reach) const {
         const Vector2 a = offset(line, segment), b = offset(line, segment + 1);
         const ScreenSegment seen = on_screen(point_, a, b);
@@ -139,13 +152,20 @@ private:
         const Vector2 from_a{-seen.from.x, -seen.from.y}, from_b{-seen.to.x, -seen.to.y};
         const double bar =
             bar_reach(from_a, from_b, direction, {begins ? square : overlap, ends ? square : overlap});
-        const double at_a = begins ? cap_reach(cap, from_a) : out_of_reach;
+        // A round corner reaches beyond a flat end that is near, but a place where the line was cut does not.
+        const bool turned = !begins && turns(way(line, segment + line.count - 2), way(line, segment));
+        const double at_a = begins                              ? cap_reach(cap, from_a)
+                            : turned && corner == Corner::round ? length(from_a)
+                                                                : out_of_reach;
         const Vector2 next = ends ? direction : outgoing(line, segment + 1, b);
         if (share > 1.0 && !ends && dot(from_b, next) > 0.0)
             return false;
-        const double at_b =
-            ends ? cap_reach(cap, from_b)
-                 : corner_reach(corner, from_b, direction, next, std::cos(miter_limit(style_)));
+        const bool goes_on =
+            ends || dot(from_b, direction) >= 0.0 || turns(way(line, segment), way(line, segment + 1));
+        const double at_b = ends ? cap_reach(cap, from_b)
+                            : goes_on
+                                ? corner_reach(corner, from_b, direction, next, std::cos(miter_limit(style_)))
+                                : out_of_reach;
         const double half_width = reach * half_width_;
         if (style_.pattern == NO_PATTERN)
             return std::min(bar, std::min(at_a, at_b)) <= half_width;
