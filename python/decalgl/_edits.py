@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._looks import COLOR_KEYWORDS, DecalState, LayerState, casing_sides, require_known
+from ._looks import COLOR_KEYWORDS, DecalState, LayerState, require_known
 from ._sources import Attributes
+from ._width_changes import casing_sides
 from .coloring import resolve_colors
 from .errors import InputError, StyleError, UnsupportedError
 from .features import FeatureTable, read_features

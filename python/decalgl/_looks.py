@@ -18,6 +18,7 @@ from ._colors import alpha_values, parse_color
 from ._core_scene import core_hatch, core_style
 from ._filters import Columns, rows_meant
 from ._style_changes import FILL_STYLES, STROKE_STYLES, Styles, changed_hatches, changed_strokes
+from ._width_changes import restyled_widths
 from .coloring import Coloring, resolve_colors
 from .errors import InputError, StyleError, UnsupportedError, close_matches
 from .frame import KEEP_THE_DATA
@@ -246,7 +247,7 @@ def _restyled(state: LayerState, keywords: Mapping[str, Any]) -> LayerState:
                 f"Layer {name!r} has no {role} that could look otherwise without preparing: it has none, or its"
                 " technique keeps looks as they were. Use technique='static'."
             )
-    decals = _restyled_widths(state, every, where)
+    decals = restyled_widths(state, every, where)
     for role, wanted in every.items():
         decals[role] = _restyled_decal(state, decals[role], wanted, where)
     result = replace(state, decals=decals)
@@ -358,67 +359,6 @@ def _styles(
     return changed_strokes(decal.styles, wanted, rows, decal.widths, where)
 
 
-def _restyled_widths(
-    state: LayerState, every: Mapping[str, Mapping[str, Any]], where: NDArray[np.bool_] | None
-) -> dict[str, DecalState]:
-    """The decals with the widths that are wanted: a casing's on each side of the line, whatever that one's becomes."""
-    decals = dict(state.decals)
-    wanted = {role: own["width"] for role, own in every.items() if "width" in own}
-    for role in wanted.keys() - {"casing"}:
-        decal = decals[role]
-        if decal.widths is None:
-            raise StyleError("fills have no width. Leave width= out, or give it to outline=.")
-        widths = _restyled_width(state, decal.widths, wanted[role], where)
-        decals[role] = _as_wide(decal, widths)
-    if "casing" in decals and wanted:
-        casing, sides = decals["casing"], casing_sides(state)
-        if "casing" in wanted:
-            if (
-                isinstance(state.layer, Layer)
-                and state.layer.casing
-                and state.layer.casing.margins is not None
-            ):
-                raise UnsupportedError(
-                    "casings of lines whose widths have limits stay as wide as they are. Prepare the scene anew."
-                )
-            sides = _restyled_width(state, sides, wanted["casing"], where)
-        line = decals["stroke"].widths
-        assert line is not None
-        decals["casing"] = _as_wide(casing, line + 2.0 * sides)
-    return decals
-
-
-def casing_sides(state: LayerState) -> NDArray[np.float64]:
-    """How wide the layer's casings are on each side of their lines."""
-    line, casing = state.decals["stroke"].widths, state.decals["casing"].widths
-    assert line is not None
-    assert casing is not None
-    return 0.5 * (casing - line)
-
-
-def _restyled_width(
-    state: LayerState, before: NDArray[np.float64], width: Any, where: NDArray[np.bool_] | None
-) -> NDArray[np.float64]:
-    widths = _widths(state, width)
-    if where is not None:
-        widths = np.where(where, widths, before)
-    wrong = np.flatnonzero(~((widths >= 0.0) & (widths < np.inf)))
-    if wrong.size:
-        raise StyleError(
-            f"row {state.rows[wrong[0]]}: width {widths[wrong[0]]:g} is no length. Give metres, 0 or more."
-        )
-    return widths
-
-
-def _as_wide(decal: DecalState, widths: NDArray[np.float64]) -> DecalState:
-    if decal.widest > 0.0 and (widths > decal.widest).any():
-        raise StyleError(
-            f"a width of {widths.max():g} m is more than the {decal.widest:g} m that it was prepared for. Make"
-            " the layer with a larger widest=."
-        )
-    return replace(decal, widths=widths)
-
-
 def _colors(
     state: LayerState, decal: DecalState, wanted: Mapping[str, Any]
 ) -> tuple[NDArray[np.uint8], Coloring | None]:
@@ -462,15 +402,6 @@ def _column_of(state: LayerState, by: Any, keyword: str) -> Any:
             f" {'column=' if keyword == 'color' else 'by='}."
         )
     return state.by
-
-
-def _widths(state: LayerState, width: Any) -> NDArray[np.float64]:
-    if state.attributes is not None:
-        return state.attributes.numbers(width, "width")[state.rows]
-    widths = np.asarray(width, dtype=np.float64)
-    if widths.shape not in ((), (state.row_count,)):
-        raise StyleError(f"width has shape {widths.shape}, but the layer has {state.row_count} rows.")
-    return np.array(np.broadcast_to(widths, state.row_count)[state.rows])
 
 
 def _opacity(state: LayerState, opacity: Any, by: Any) -> NDArray[np.float64]:
