@@ -3,11 +3,14 @@
 #include "gl_fixture.h"
 
 #include "gl/buffer.h"
+#include "gl/context_state.h"
 #include "gl/gl.h"
+#include "gl/program.h"
 
 #include <catch2/catch.hpp>
 
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -161,6 +164,29 @@ TEST_CASE("errors of the driver become exceptions at the next check") {
         CHECK_THAT(error.what(), Catch::Contains("binding too far") && Catch::Contains("GL_INVALID_VALUE"));
     }
     check_errors("after the error was told");
+}
+
+TEST_CASE("a recycled context comes back with its programs, and what has failed does not") {
+    test::test_context().release();
+    std::unique_ptr<Context> context = Context::acquire(Backend::automatic);
+    const Context* const first = context.get();
+    const GLuint program = context->programs().get("floor", {}).id();
+    Context::recycle(std::move(context));
+    CHECK(Context::current() == nullptr);
+    context = Context::acquire(Backend::automatic);
+    CHECK(context.get() == first);
+    CHECK(Context::current() == first);
+    CHECK(context->programs().get("floor", {}).id() == program);
+
+    const std::unique_ptr<Context> other = Context::acquire(Backend::automatic);
+    CHECK(other.get() != first);
+    context->make_current();
+    glBindBufferBase(GL_UNIFORM_BUFFER, 1000000, 0);
+    other->make_current();
+    const std::weak_ptr<ContextState> failed = context->state();
+    Context::recycle(std::move(context));
+    CHECK(Context::current() == other.get());
+    CHECK(failed.expired());
 }
 
 TEST_CASE("without a current context, objects are refused with an error") {

@@ -48,7 +48,9 @@ int border_of(Antialias antialias) {
 }  // namespace
 
 Pipeline::Pipeline(const RendererOptions& options, const MemoryAccount& memory)
-    : memory_(memory), context_(gl::Context::create(backend_named(options.backend))), options_(options) {
+    : memory_(memory),
+      context_(gl::Context::acquire(backend_named(options.backend)).release()),
+      options_(options) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDepthFunc(GL_GREATER);
     glDisable(GL_DITHER);

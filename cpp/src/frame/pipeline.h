@@ -123,7 +123,12 @@ private:
     void draw_full_screen();
 
     MemoryAccount memory_;
-    std::unique_ptr<gl::Context> context_;
+    struct Recycled {
+        void operator()(gl::Context* context) const noexcept {
+            gl::Context::recycle(std::unique_ptr<gl::Context>(context));
+        }
+    };
+    std::unique_ptr<gl::Context, Recycled> context_;
     gl::ProgramLibrary programs_;
     RendererOptions options_;
     TimingLog timings_{true};

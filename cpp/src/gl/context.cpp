@@ -5,9 +5,12 @@
 #include "gl/context_info.h"
 #include "gl/context_state.h"
 #include "gl/gl.h"
+#include "gl/program.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <mutex>
 #include <utility>
 
@@ -89,6 +92,19 @@ std::vector<Platform> platforms_of(Backend backend) {
     return platforms;
 }
 
+constexpr std::size_t most_idle_contexts = 4;
+
+struct IdleContexts {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Context>> contexts;
+};
+
+/// Never destroyed: at the end of the process drivers may be gone before it would be.
+IdleContexts& idle_contexts() {
+    static auto* const idle = new IdleContexts;
+    return *idle;
+}
+
 }  // namespace
 
 std::unique_ptr<Context> open_platform(const Platform& platform, bool debug) {
@@ -109,7 +125,7 @@ const char* to_string(Backend backend) {
     return "unknown";
 }
 
-Context::Context() : state_(std::make_shared<ContextState>()) {
+Context::Context() : state_(std::make_shared<ContextState>()), programs_(std::make_unique<ProgramCache>()) {
     state_->context = this;
 }
 
@@ -130,6 +146,46 @@ std::unique_ptr<Context> Context::create(Backend backend, bool debug) {
         "No OpenGL 4.5 context could be opened, so nothing can be drawn. Tried:" + attempts +
             "\nOn Debian and Ubuntu, `apt-get install libegl1 libgl1-mesa-dri` brings a software renderer "
             "that needs no graphics card (or `apt-get install libosmesa6`). `decalgl doctor` shows more.");
+}
+
+std::unique_ptr<Context> Context::acquire(Backend backend) {
+    std::unique_ptr<Context> context;
+    {
+        const std::lock_guard<std::mutex> lock(idle_contexts().mutex);
+        auto& idle = idle_contexts().contexts;
+        // The last one first: what follows each other often wants the same programs.
+        const auto found = std::find_if(idle.rbegin(), idle.rend(), [&](const auto& one) {
+            return one->wanted_ == backend && one->state_->debug == debug_from_environment();
+        });
+        if (found != idle.rend()) {
+            context = std::move(*found);
+            idle.erase(std::next(found).base());
+        }
+    }
+    if (context == nullptr) {
+        context = create(backend);
+        context->wanted_ = backend;
+        return context;
+    }
+    context->uploads_ = {};
+    context->make_current();
+    return context;
+}
+
+void Context::recycle(std::unique_ptr<Context> context) noexcept {
+    try {
+        {
+            const CurrentScope current(*context);
+            check_errors("finishing");
+        }
+        context->release();
+        const std::lock_guard<std::mutex> lock(idle_contexts().mutex);
+        if (idle_contexts().contexts.size() < most_idle_contexts) {
+            idle_contexts().contexts.push_back(std::move(context));
+        }
+    } catch (...) {
+        // What has failed is closed.
+    }
 }
 
 void Context::set_up(const std::string& platform, bool debug) {

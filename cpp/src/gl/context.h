@@ -51,6 +51,7 @@ struct Uploads {
 };
 
 struct Platform;
+class ProgramCache;
 
 /// Remembers which context an object belongs to, and outlives it.
 struct ContextState;
@@ -61,6 +62,12 @@ public:
     /// `debug` (or DECALGL_GL_DEBUG=1) makes the driver's errors exceptions at the next check_errors().
     /// Throws Error(graphics) that lists every attempt, why it failed and the packages to install.
     static std::unique_ptr<Context> create(Backend backend = Backend::automatic, bool debug = false);
+
+    /// One that was recycled, else a new one.
+    static std::unique_ptr<Context> acquire(Backend backend);
+    /// Keeps a context, with the programs that it has compiled, for the next one who wants the like: linking them again
+    /// would take longer than many a picture. One that has failed, or is one too many, is closed.
+    static void recycle(std::unique_ptr<Context> context) noexcept;
 
     virtual ~Context();
     Context(const Context&) = delete;
@@ -73,6 +80,7 @@ public:
     void release() noexcept;
 
     const ContextInfo& info() const { return info_; }
+    ProgramCache& programs() { return *programs_; }
     /// Counted by buffers and textures; whoever wants to know sets it to zero before.
     Uploads& uploads() { return uploads_; }
 
@@ -107,6 +115,8 @@ private:
     ContextInfo info_;
     Uploads uploads_;
     std::shared_ptr<ContextState> state_;
+    std::unique_ptr<ProgramCache> programs_;
+    Backend wanted_ = Backend::automatic;
 };
 
 /// Makes a context current for a scope, then puts back what was current on this thread before.

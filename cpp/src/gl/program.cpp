@@ -271,10 +271,18 @@ void Program::set_array(const std::string& name, Span<const glm::mat4> values) {
     glProgramUniformMatrix4fv(id(), location(name), length_of(values.size()), GL_FALSE, floats_of(values));
 }
 
-Program& ProgramLibrary::get(const std::string& name, const Flags& flags) {
+Program& ProgramCache::get(const std::string& name, const Flags& flags) {
     std::unique_ptr<Program>& entry = programs_[{name, flags}];
     if (entry == nullptr) {
         entry = std::make_unique<Program>(Program::create(name, flags));
+    }
+    return *entry;
+}
+
+Program& ProgramLibrary::get(const std::string& name, const Flags& flags) {
+    Program*& entry = programs_[{name, flags}];
+    if (entry == nullptr) {
+        entry = &Context::require_current().programs().get(name, flags);
     }
     return *entry;
 }

@@ -82,16 +82,25 @@ private:
     std::string text_;  ///< all stages, to tell an optimised uniform from a mistyped one
 };
 
-/// The variants used so far in one context, each compiled once.
+/// The variants that one context has compiled, each once.
+class ProgramCache {
+public:
+    Program& get(const std::string& name, const Flags& flags);
+
+private:
+    std::map<std::pair<std::string, Flags>, std::unique_ptr<Program>> programs_;
+};
+
+/// The variants that someone has used so far, all of one context's.
 class ProgramLibrary {
 public:
     Program& get(const std::string& name, const Flags& flags = {});
 
-    /// "terrain", "static_decals[HOLES,IDS]": what was compiled, in alphabetical order.
+    /// "terrain", "static_decals[HOLES,IDS]": what was used, in alphabetical order.
     std::vector<std::string> variants() const;
 
 private:
-    std::map<std::pair<std::string, Flags>, std::unique_ptr<Program>> programs_;
+    std::map<std::pair<std::string, Flags>, Program*> programs_;
 };
 
 /// "name[A,B]", or the plain name where there are no flags.
