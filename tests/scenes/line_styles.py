@@ -143,6 +143,31 @@ def dots() -> View:
 
 
 @named
+def dots_with_marks() -> View:
+    """Lines of one vertex are as wide as their pattern is where it begins; some with bands, some on slopes."""
+    scene = flat_ground()
+    places = grid(8, 6)
+    features = [[places[row, column][None]] for row in range(6) for column in range(8)]
+    styles = [
+        StrokeStyle(
+            cap=CAPS[row % 3],
+            pattern=dashes(9.0, (1.0, 5.0, 0.2, 1.0), (6.0, 7.0), offset=1.2 * column),
+            bands=BANDS if row >= 3 else (),
+            slope_correction="tangent" if column % 2 else "none",
+        )
+        for row in range(6)
+        for column in range(8)
+    ]
+    styled(
+        scene,
+        "lines",
+        features,
+        stroke=stroke(48, np.tile(np.geomspace(3.0, 9.0, 8), 6), tints(48, 16, 0.7), styles, np.arange(48)),
+    )
+    return above(scene)
+
+
+@named
 def closed_lines() -> View:
     """Lines that end where they began have a corner there; those of two segments have caps."""
     scene = flat_ground()

@@ -81,8 +81,9 @@ uvec2 samples_beside(Bar bar, float half_width) {
 }
 
 #ifdef PARTS
-// How far a mitred corner reaches, in half widths.
-float longest_reach(Style style) {
+// How far a mitred corner reaches, or a dot's, in half widths.
+float longest_reach(Style style, bool is_dot) {
+    if (is_dot) return has(style, STYLE_SQUARE) ? sqrt(2.0) : 1.0;
     return has(style, STYLE_MITER) ? inversesqrt(max(0.5 * (1.0 + style.miter_turn), 1e-4)) : 1.0;
 }
 
@@ -94,7 +95,7 @@ uint alike_in_styled(Group group, vec2 from, vec2 to) {
     float past = t - clamp(t, 0.0, run);
     float across = abs(from.x * along.y - from.y * along.x) / max(run, 1e-6);
     float apart = run > 0.0 ? sqrt(across * across + past * past) : length(from);
-    if (apart > group.half_width * longest_reach(group.style) + group.reach) return for_none;
+    if (apart > group.half_width * longest_reach(group.style, run == 0.0) + group.reach) return for_none;
     bool beside = abs(past) == 0.0 && t >= group.reach && t + group.reach <= run;
     bool even = !has(group.style, STYLE_PATTERN | STYLE_BANDS);
     return even && beside && across + group.reach <= group.half_width ? for_all : for_each;
@@ -114,6 +115,15 @@ uint next_alike(inout Group group, uint word, vec2 from, vec2 to) {
 }
 
 #ifdef JOINED
+// Those in a dot around a point; `from` leads from it to the pixel's centre.
+uvec2 samples_in_dot(Group group, vec2 from, float half_width, uvec2 samples) {
+    if (!has(group.style, STYLE_SQUARE)) return samples_in_disc(group, from, half_width, samples);
+    Direction x = direction_of(vec2(1.0, 0.0) * group.foot), y = direction_of(vec2(0.0, 1.0) * group.foot);
+    uvec2 beside_x = samples_beyond(x, from.x + half_width) & ~samples_beyond(x, from.x - half_width);
+    uvec2 beside_y = samples_beyond(y, from.y + half_width) & ~samples_beyond(y, from.y - half_width);
+    return beside_x & beside_y & samples;
+}
+
 // The corner before an edge, after one whose direction is `came`: what corner_reach tells of a point.
 uvec2 samples_in_corner(Group group, vec2 from, vec2 came, Bar next, float half_width, uvec2 samples) {
     vec2 axis = normalize(came);
@@ -169,8 +179,8 @@ uvec2 samples_in_pattern(Group group, Bar bar, float periods, float run) {
 void add_styled(inout Group group, vec2 from, vec2 to) {
     Bar bar = bar_of(group, from, to);
     bool joined = has(group.style, STYLE_JOINED);
-    bool is_disc = from == to;
-    uvec2 marks = is_disc ? no_samples : bar.begun & ~bar.ended;
+    bool is_dot = from == to;
+    uvec2 marks = is_dot ? no_samples : bar.begun & ~bar.ended;
     float width = 1.0;
 #ifdef PATTERNS
     if (has(group.style, STYLE_PATTERN)) {
@@ -194,10 +204,11 @@ void add_styled(inout Group group, vec2 from, vec2 to) {
 #endif
         float half_width = group.half_width * min(reach, width);
         covered |= marks & samples_beside(bar, group.half_width * reach);
-        // The disc around an end of a plain stroke, around a dot, or a corner.
-        if ((!joined || is_disc) && width > 0.0) covered |= samples_in_disc(group, to, half_width, ~covered);
+        // The disc around an end of a plain stroke, a dot, or a corner.
+        if (!joined && width > 0.0) covered |= samples_in_disc(group, to, half_width, ~covered);
 #ifdef JOINED
-        if (joined && !is_disc && group.pen_before.has_came && width > 0.0) covered |= samples_in_corner(group, from, group.pen_before.came, bar, half_width, ~covered);
+        if (joined && is_dot && width > 0.0) covered |= samples_in_dot(group, to, half_width, ~covered);
+        if (joined && !is_dot && group.pen_before.has_came && width > 0.0) covered |= samples_in_corner(group, from, group.pen_before.came, bar, half_width, ~covered);
 #endif
 #ifdef BANDS
         if (i < bands - 1) within_band[i] = covered;

@@ -13,7 +13,7 @@
 // plain strokes and fills. The miter limit is the cosine of the largest turn that is still mitred.
 //
 // Lines whose corners and ends are not all round are JOINED: an edge is a bar alone; between two edges that follow each other there
-// is a corner; an edge of no length is a disc; a MOVE lifts the pen, even to where the run has come to. Where it has a pattern,
+// is a corner; an edge of no length is a disc, or a SQUARE's dot with sides along x and y; a MOVE lifts the pen, even to where the run has come to. Where it has a pattern,
 // a word follows each MOVE: how far along the period it is, as a fraction of PHASE_ONE. There a MOVE to where the run has come to
 // keeps the corner, as the pattern begins anew where a ring closes, unless PHASE_LIFTS is set: another part of the line begins.
 //
@@ -37,6 +37,7 @@
 #define STYLE_TANGENT 32u  // as wide on the slope as on the map
 #define STYLE_THOENY 64u
 #define STYLE_HATCH 128u
-#define STYLE_WIDENED 256u  // not in records: some stroke may become wider than it is
+#define STYLE_SQUARE 256u
+#define STYLE_WIDENED 512u  // not in records: some stroke may become wider than it is
 
 #endif

@@ -112,13 +112,18 @@ float joint_reach(Style style, vec2 at, vec2 came, vec2 goes) {
     return corner_reach(corner_of(style), at, normalize(came), normalize(goes), -style.miter_turn);
 }
 
+// Of a line without length, whose place `at` leads from.
+float dot_reach(Style style, vec2 at) {
+    return has(style, STYLE_SQUARE) ? max(abs(at.x), abs(at.y)) : length(at);
+}
+
 // The share at which a joined stroke's next edge covers a point, with the corner before it. `from` and `to` lead from
 // the edge's ends to the point, `run` is its length on the map.
 float joined_share(Style style, Pen pen, vec2 from, vec2 to, float run) {
     vec2 goes = from - to;
     float length_of_edge = length(goes);
     float width = pattern_width(style, pen.periods);
-    if (length_of_edge == 0.0) return within_width(length(from) / style.half_width, width);
+    if (length_of_edge == 0.0) return within_width(dot_reach(style, from) / style.half_width, width);
     float t = dot(from, goes) / length_of_edge;
     float s = abs(goes.x * from.y - goes.y * from.x) / length_of_edge;
     bool beside = t >= 0.0 && t <= length_of_edge;

@@ -46,7 +46,7 @@ void CellListBuilder::add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uin
     ++edges_;
 }
 
-void CellListBuilder::add_disc(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase) {
+void CellListBuilder::add_dot(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase) {
     begin_run(cell, slot, LINE, at, phase);
     add_word(cell, at);
 }

@@ -48,7 +48,7 @@ public:
             cells_[cell].last = no_point;
     }
     // A joined stroke's disc.
-    void add_disc(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase);
+    void add_dot(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase);
     void add_covers(uint32_t cell, uint32_t slot, uint32_t flags);
     bool has_group(uint32_t cell, uint32_t slot) const { return cells_[cell].slot == slot; }
     bool is_covered(uint32_t cell, uint32_t slot) const {

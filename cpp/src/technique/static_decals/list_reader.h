@@ -166,7 +166,7 @@ private:
         for (size_t i = 0; i < shares_.size(); ++i) {
             const Vector2 past = at(i) - from;
             if (length == 0.0) {
-                cover(i, std::sqrt(dot(past, past)) / style_.half_width(), width);
+                cover(i, style_.dot_share(past), width);
                 continue;
             }
             const double t = dot(past, direction);

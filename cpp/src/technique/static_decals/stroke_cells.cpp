@@ -99,31 +99,22 @@ void StrokeCells::add_edges(Span<const LatticePoint> points, const StrokeEnds& e
         add(points[i - 1], points[i]);
 }
 
-template <typename OnEdge, typename OnDisc>
+template <typename OnEdge, typename OnDot>
 void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeEnds& ends, OnEdge on_edge,
-                                  OnDisc on_disc) const {
+                                  OnDot on_dot) const {
     const double radius = shape_->half_width;
     const bool square = shape_->cap == Cap::square, round = shape_->cap == Cap::round;
     const size_t last = points.size() - 1;
     if (last == 0) {
         if (!ends.begins || !ends.ends)
             return;
-        const auto arm = static_cast<int64_t>(std::lrint(radius));
-        const LatticePoint at = points[0];
-        if (round)
-            on_disc(at, ends.periods, true);
-        else if (square)
-            on_edge(Edge{{at.x - arm, at.y},
-                         {at.x + arm, at.y},
-                         ends.periods - radius * shape_->periods_per_quantum,
-                         false,
-                         true},
-                    2.0 * radius);
+        if (round || square)
+            on_dot(points[0], ends.periods, true);
         return;
     }
     double periods = ends.periods;
     if (ends.begins && round)
-        on_disc(points[0], periods, true);
+        on_dot(points[0], periods, true);
     for (size_t i = 1; i <= last; ++i) {
         const bool begins = i == 1 && ends.begins, finishes = i == last && ends.ends;
         Edge edge{points[i - 1], points[i], periods, i == 1 && !ends.begins, begins};
@@ -143,7 +134,7 @@ void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeE
         on_edge(edge, reach);
     }
     if (ends.ends && round)
-        on_disc(points[last], periods, false);
+        on_dot(points[last], periods, false);
 }
 
 void StrokeCells::add_joined(Span<const LatticePoint> points, const StrokeEnds& ends) {
@@ -155,7 +146,7 @@ void StrokeCells::add_joined(Span<const LatticePoint> points, const StrokeEnds& 
         },
         [&](LatticePoint at, double periods, bool begins) {
             for_each_square_near(at, at, reach_, cells_, [&](int64_t column, int64_t row) {
-                add_disc(at, periods, begins, lists_->cell_at(column, row), column, row);
+                add_dot(at, periods, begins, lists_->cell_at(column, row), column, row);
             });
         });
 }
@@ -176,8 +167,8 @@ void StrokeCells::mark_touched_cells(Span<const LatticePoint> points, const Stro
         mark(points[i == 0 ? 0 : i - 1], points[i], shape_->half_width);
 }
 
-void StrokeCells::add_disc(LatticePoint at, double periods, bool begins, uint32_t cell, int64_t column,
-                           int64_t row) {
+void StrokeCells::add_dot(LatticePoint at, double periods, bool begins, uint32_t cell, int64_t column,
+                          int64_t row) {
     if (!shows_in(cell) || (covers_cells_ && lists_->is_covered(cell, slot_)))
         return;
     const double unit = std::ldexp(1.0, -shape_->scale), origin = cell_bias(lists_->level());
@@ -189,9 +180,9 @@ void StrokeCells::add_disc(LatticePoint at, double periods, bool begins, uint32_
     if (begins)
         lists_->lift_pen(cell, slot_);
     const uint32_t phase = phase_of(periods, begins);
-    lists_->add_disc(cell, slot_,
-                     word_of(static_cast<uint32_t>(std::lrint(x)), static_cast<uint32_t>(std::lrint(y))),
-                     shape_->periods_per_quantum > 0.0 ? &phase : nullptr);
+    lists_->add_dot(cell, slot_,
+                    word_of(static_cast<uint32_t>(std::lrint(x)), static_cast<uint32_t>(std::lrint(y))),
+                    shape_->periods_per_quantum > 0.0 ? &phase : nullptr);
 }
 
 void StrokeCells::add_edge(const Edge& edge, int64_t column, int64_t row) {

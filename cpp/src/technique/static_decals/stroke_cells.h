@@ -46,14 +46,14 @@ private:
     };
 
     void add_joined(Span<const LatticePoint> points, const StrokeEnds& ends);
-    void add_disc(LatticePoint at, double periods, bool begins, uint32_t cell, int64_t column, int64_t row);
+    void add_dot(LatticePoint at, double periods, bool begins, uint32_t cell, int64_t column, int64_t row);
     void add_edge(const Edge& edge, int64_t column, int64_t row);
     bool shows_in(uint32_t cell) const { return open_ == nullptr || (*open_)[cell] != 0; }
 
-    // Calls on_edge(edge, reach) and on_disc(point, periods), in order, for what a joined stroke consists of.
-    template <typename OnEdge, typename OnDisc>
+    // Calls on_edge(edge, reach) and on_dot(point, periods), in order, for what a joined stroke consists of.
+    template <typename OnEdge, typename OnDot>
     void for_each_joined(Span<const LatticePoint> points, const StrokeEnds& ends, OnEdge on_edge,
-                         OnDisc on_disc) const;
+                         OnDot on_dot) const;
 
     CellListBuilder* lists_;
     SquareRange cells_{};

@@ -65,6 +65,13 @@ public:
                half_width();
     }
 
+    // The same of a line without length, from whose place `at` leads.
+    double dot_share(Vector2 at) const {
+        const double reach =
+            is(STYLE_SQUARE) ? std::max(std::abs(at.x), std::abs(at.y)) : std::hypot(at.x, at.y);
+        return reach / half_width();
+    }
+
     // Of those that there are, the one at a share of the half width.
     uint32_t band(double share) const {
         if (!is(STYLE_BANDS))

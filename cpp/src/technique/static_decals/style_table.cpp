@@ -37,6 +37,8 @@ uint32_t flags_of(const StrokeStyle& style) {
         flags |= STYLE_JOINED;
     if (style.corner != Corner::round)
         flags |= style.corner == Corner::miter ? STYLE_MITER : STYLE_BEVEL;
+    if (style.cap == Cap::square)
+        flags |= STYLE_SQUARE;
     if (style.pattern.period > 0.0)
         flags |= STYLE_PATTERN;
     if (!style.bands.empty())
