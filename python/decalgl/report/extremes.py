@@ -323,24 +323,24 @@ def _powers(first: int, last: int, step: int = 1) -> tuple[float, ...]:
 
 
 EXTREMES = (
-    Extreme("coordinates", "magnitude of coordinates", "m", _powers(0, 9), (1e1, 1e8, 1e9), _coordinates),
+    Extreme("coordinates", "magnitude of coordinates", "m", _powers(0, 9), (1e8, 1e9), _coordinates),
     Extreme(
-        "feature size", "ground ÷ feature", "", _powers(1, 10), _powers(1, 9, 4), _feature_size
+        "feature size", "ground ÷ feature", "", _powers(1, 10), (1e1, 1e5), _feature_size
     ),
     Extreme("angle", "angle at a round joint", "degrees", (179.99, 150, 90, 30, 10, 3, 1, 0.1, 0.01, 0.0),
-            (90, 1, 0.0), _angle),
-    Extreme("miter", "angle at a miter", "degrees", (179.99, 150, 90, 30, 10, 6, 5, 1, 0.0), (90, 6, 1), _miter),
-    Extreme("width ÷ length", "line width ÷ segment length", "", _powers(-2, 4), (0.1, 10, 100), _width_ratio),
-    Extreme("line width", "line width on the screen", "pixels", _powers(-3, 4), _powers(-2, 2, 2), _line_width),
-    Extreme("distance", "distance of the eye", "m", (0.5, *_powers(0, 7)), (0.5, 1e3, 1e7), _distance),
+            (1, 0.0), _angle),
+    Extreme("miter", "angle at a miter", "degrees", (179.99, 150, 90, 30, 10, 6, 5, 1, 0.0), (6, 1), _miter),
+    Extreme("width ÷ length", "line width ÷ segment length", "", _powers(-2, 4), (0.1, 100), _width_ratio),
+    Extreme("line width", "line width on the screen", "pixels", _powers(-3, 4), (1e-2, 1e2), _line_width),
+    Extreme("distance", "distance of the eye", "m", (0.5, *_powers(0, 7)), (0.5, 1e7), _distance),
     Extreme("tilt", "elevation of the eye above the ground", "degrees",
-            (90, 45, 20, 10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05), (90, 5, 0.2), _tilt),
-    Extreme("slope", "slope of the ground", "degrees", (0, 30, 60, 80, 85, 89, 89.9, 89.99), (30, 80, 89.9), _slope),
+            (90, 45, 20, 10, 5, 2, 1, 0.5, 0.2, 0.1, 0.05), (90, 0.2), _tilt),
+    Extreme("slope", "slope of the ground", "degrees", (0, 30, 60, 80, 85, 89, 89.9, 89.99), (30, 89.9), _slope),
     Extreme("exaggeration", "exaggeration of the ground", "", (0, *_powers(0, 5)), (1, 1000), _exaggeration),
-    Extreme("overlap", "translucent features over one pixel", "", _powers(0, 4), (1, 100), _overlap),
+    Extreme("overlap", "translucent features over one pixel", "", _powers(0, 5), (1, 100), _overlap),
     Extreme("nesting", "rings inside one another", "", _powers(0, 3), (10, 100), _nesting),
-    Extreme("coincident", "gap between borders", "m", _powers(-7, 1)[::-1], (1, 1e-3, 1e-6), _coincident),
-    Extreme("sliver", "length of slivers 4 m wide", "m", _powers(2, 11), (1e2, 1e5, 1e8), _sliver),
+    Extreme("coincident", "gap between borders", "m", _powers(-7, 1)[::-1], (1, 1e-6), _coincident),
+    Extreme("sliver", "length of slivers 4 m wide", "m", _powers(2, 11), (1e2, 1e8), _sliver),
     Extreme("vertices", "vertices of a ring", "", _powers(1, 6), (1e2, 1e4), _vertices),
     Extreme("holes", "holes of a polygon", "", _powers(0, 5), (1e2, 1e3), _holes),
 )  # fmt: skip

@@ -67,7 +67,7 @@ class Maps:
     """The scenes that factors are measured on: slices of height and isolines, whole or in parts."""
 
     def __init__(self, context: Context) -> None:
-        self.size = context.chosen((32, 18), (320, 180), context.picture)
+        self.size = context.chosen((32, 18), (192, 108), context.picture)
         self._map = build("floods", context.step)
 
     @functools.cached_property
@@ -311,6 +311,7 @@ FACTORS = (
         "+.+",
         (1.0, 2.0, 4.0, 8.0),
         _dynamic(lambda maps, width: ({"width": width}, maps.cameras["oblique"], maps.size)),
+        few=(1.0, 4.0),
     ),
     Factor(
         "transparency",

@@ -64,7 +64,7 @@ def rows(context: Context, maps: Maps) -> Iterator[Row]:
 
 def _of_widths(context: Context, maps: Maps, camera: dg.Camera) -> Iterator[Row]:
     many = list(np.resize(["crimson", "navy", "teal"], len(maps.lines)))
-    few = context.chosen((0,), (0, -1), (0, 1, 2))
+    few = context.chosen((0,), (0, 1), (0, 1, 2))
     for width, opacity in itertools.product([WIDTHS[i] for i in few], [OPACITIES[i] for i in few]):
         words = {"width": f"{width:g}", "opacity": f"{opacity:g}"}
         static = scene_of(maps, None, maps.lines, width=width * maps.line_width, alpha=opacity)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import TYPE_CHECKING
 
@@ -109,12 +110,19 @@ ODD_INPUTS: dict[str, Callable[[], Case]] = {
 
 def rows(context: Context) -> list[Row]:
     """A row for each input and technique: how far its picture is from the reference, or an `error`; the `verdict`."""
-    found: list[Row] = []
-    for name in list(ODD_INPUTS)[: context.chosen(2, None, None)]:
-        case = ODD_INPUTS[name]()
-        for technique, way in WAYS.items():
-            found.append({"scene": name, "technique": technique, **stability.judged(way, case)})
-    return found
+    names = list(ODD_INPUTS)[: context.chosen(2, None, None)]
+    row_of = functools.partial(_row, every=stability.judged_pixels(context))
+    with stability.judges() as pool:
+        return list(pool.map(row_of, [(name, technique) for name in names for technique in WAYS]))
+
+
+def _row(asked: tuple[str, str], every: int) -> Row:
+    name, technique = asked
+    return {
+        "scene": name,
+        "technique": technique,
+        **stability.judged(WAYS[technique], ODD_INPUTS[name](), every),
+    }
 
 
 def figures(rows: Sequence[Row]) -> list[Figure]:

@@ -41,22 +41,26 @@ UNKNOWN_SPREAD = 0.1  # of times of one round, as a share
 class Way:
     """A technique; most: segments up to which it is asked, in a tiny, quick and full report; 0: not at all.
 
-    fills: whether it draws polygons.
+    fills: whether it draws polygons. layers: that it is asked for.
     """
 
     technique: dg.Technique
     most: tuple[float, float, float]
     options: dict[str, Any] = field(default_factory=dict)
+    antialias: str = "none"
     pixels: bool = False
     fills: bool = True
+    layers: int = 16
 
 
 WAYS = {
-    "static": Way(dg.Static(), (1e5, 1e6, 3e7)),
-    "static bvh": Way(dg.Static(), (0, 1e5, 1e7), {"index": "bvh"}),
+    "static": Way(dg.Static(), (1e5, 1e6, 3e7), layers=256),
+    "static coverage": Way(dg.Static(), (0, 1e5, 3e7), antialias="coverage", layers=256),
+    "static bvh": Way(dg.Static(), (0, 1e5, 1e7), {"index": "bvh"}, layers=256),
+    "static thoeny": Way(dg.Static(), (0, 1e4, 1e6), {"index": "thoeny"}, layers=256),
     "dynamic bins": Way(dg.Dynamic(method="bins"), (1e4, 1e5, 1e7), pixels=True, fills=False),
     "dynamic lists": Way(dg.Dynamic(method="lists"), (0, 1e4, 1e6), pixels=True, fills=False),
-    "loops": Way(dg.Loops(), (0, 1e5, 1e6)),
+    "loops": Way(dg.Loops(), (0, 1e5, 1e6), layers=256),
     "volume": Way(dg.Volume(), (0, 1e4, 1e6)),
     "clipmap": Way(dg.Clipmap(), (0, 1e5, 1e6)),
     "distance_field": Way(dg.DistanceField(), (0, 1e4, 1e6), fills=False),
@@ -108,10 +112,9 @@ def _over_pixels(context: Context) -> list[Row]:
 
 def _over_layers(context: Context) -> list[Row]:
     found: list[Row] = []
-    several = ("static", "static bvh", "loops")  # layers in one index, or one after the other
-    ways = {name: way for name, way in _ways(context, 20_000).items() if name in several}
     for count in context.chosen([1, 4], [1, 16], [1, 4, 16, 64, 256]):
         context.say(f"scaling: {count} layers")
+        ways = {name: way for name, way in _ways(context, 20_000).items() if count <= way.layers}
         scenes = {name: _lines_scene(way, 20_000, count) for name, way in ways.items()}
         found += _measured(context, "layers", count, scenes, ways, context.picture)
     return found
@@ -163,7 +166,7 @@ def _measured(
     for name, scene in scenes.items():
         row: Row = {"scene": f"{sweep} {count:g}", "sweep": sweep, "technique": name, "count": count}
         found[name] = row
-        renderer = dg.Renderer(size=size, antialias="none", **ways[name].options)
+        renderer = dg.Renderer(size=size, antialias=ways[name].antialias, **ways[name].options)
         try:
             row["prepare_ms"] = measure.timed(functools.partial(renderer.preprocess, scene))
             renderer.update(_camera())
@@ -172,15 +175,15 @@ def _measured(
             row["error"] = str(error)
             continue
         row["held_bytes"] = sum(n for owner, n in stats.bytes.items() if owner not in ("terrain", "frame"))
-        measures += [_drawing(renderer, name), _floor(renderer, name)]
+        measures += [_drawing(renderer, ways[name].antialias, name), _floor(renderer, name)]
     runs = context.runs if count <= MOST_REPEATED else 1
     times = measure.interleaved(runs, *measures) if measures else {}
     return [{**row, **_own(times, name)} for name, row in found.items()]
 
 
-def _drawing(renderer: dg.Renderer, name: str) -> Measure:
+def _drawing(renderer: dg.Renderer, antialias: str, name: str) -> Measure:
     def run() -> Times:
-        passes = measure.draw(renderer, _camera(), "none").stats.passes
+        passes = measure.draw(renderer, _camera(), antialias).stats.passes
         return {f"{name} draw_ms": sum(one["ms"] for one in passes if one["name"] not in GROUND_PASSES)}
 
     return run

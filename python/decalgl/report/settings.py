@@ -55,8 +55,8 @@ def settings(context: Context) -> list[Setting]:
 def _static() -> Iterator[Setting]:
     yield Setting("static", "none", "none", quick=True)
     yield Setting("static", "coverage", quick=True)
-    yield Setting("static", "fxaa", "fxaa", quick=True)
-    yield Setting("static", "msaa 4", "msaa", renderer={"samples": 4}, quick=True)
+    yield Setting("static", "fxaa", "fxaa")
+    yield Setting("static", "msaa 4", "msaa", renderer={"samples": 4})
     for samples in (2, 4, 8, 16):
         yield Setting("static", f"ssaa {samples}", "ssaa", renderer={"samples": samples}, quick=samples == 4)
 
@@ -66,7 +66,7 @@ def _published() -> Iterator[Setting]:
     yield _bvh("none", "none", quick=True)
     yield _bvh("coverage")
     for cells in (125, 250, 1000):
-        yield _bvh(f"{cells}² cells", "none", cells=cells, quick=cells == 125)
+        yield _bvh(f"{cells}² cells", "none", cells=cells)
     for capacity in (2, 32):
         yield _bvh(f"leaves of {capacity}", "none", leaf_capacity=capacity)
     for depth in (2, 4, 16):
@@ -101,7 +101,7 @@ def _loops() -> Iterator[Setting]:
     for error in (0.5, 2.0):
         technique = dg.Loops(detail=dg.Detail(screen=error))
         for mode in ("none", "fxaa"):
-            quick = error == 0.5
+            quick = error == 0.5 and mode == "none"
             yield Setting("loops", f"{error:g} px, {mode}", mode, technique, technique, quick=quick)
 
 
@@ -123,7 +123,7 @@ def _clipmap() -> Iterator[Setting]:
         ("isotropic", dg.Clipmap(anisotropy=1)),
         ("solution 1", dg.Clipmap(solution="1")),
     ):
-        quick = name in ("window 512", "window 1024")
+        quick = name == "window 1024"
         yield Setting("clipmap", name, "none", polygons=technique, lines=technique, quick=quick)
 
 
@@ -133,4 +133,4 @@ def _fields() -> Iterator[Setting]:
         ("32 bits", dg.DistanceField(bits=32)),
         ("32 bits, exact", dg.DistanceField(bits=32, drop_off="exact")),
     ):
-        yield Setting("distance_field", name, lines=technique, quick=name != "32 bits")
+        yield Setting("distance_field", name, lines=technique, quick=name == "8 bits")

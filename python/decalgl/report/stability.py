@@ -27,7 +27,7 @@ from .extremes import EXTREMES, SIZE
 from .part import Figure, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from concurrent.futures import Executor
 
     from numpy.typing import NDArray
@@ -53,6 +53,8 @@ SHORT = {
     FAILS: "fails",
 }
 MOST_WORKERS = 8  # each may hold some gigabytes
+# Of a quick report every so many pixels are judged: no divisor of a row's, so that they are scattered.
+EVERY = 7
 LEAST_DRAWN = 1e-5  # where curves of shares meet the axis
 
 TITLE = "Stability"
@@ -64,7 +66,7 @@ ABOUT = (
     f" from those over all areas within a pixel of it. Exact: at most {MOST_ROUGH:.1%} are rough. Within tolerance: at"
     f" most {MOST_ROUGH:.1%} are far. Degrades gracefully: at most {MOST_FAR:.0%} are far. Warns: more are far, and a"
     " warning says so; refuses: an error does. Fails: more are far, and nothing says so. Verdicts follow from the rows"
-    " alone."
+    f" alone. A quick report judges one of {EVERY} pixels."
 )
 
 
@@ -188,27 +190,39 @@ REASONS = {
 
 
 def rows(context: Context) -> list[Row]:
-    """A row for each extreme, value and technique: `rough` and `far`, or an `error`; and the `verdict`.
-
-    The reference takes most of the time, on one core, so each core judges some of the pictures.
-    """
+    """A row for each extreme, value and technique: `rough` and `far`, or an `error`; and the `verdict`."""
     found: list[Row] = []
-    workers = min(MOST_WORKERS, len(os.sched_getaffinity(0)))
-    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
+    with judges() as pool:
         for extreme in context.chosen(EXTREMES[:2], EXTREMES, EXTREMES):
             context.say(f"stability: {extreme.title}")
             values = context.chosen(extreme.quick[:1], extreme.quick, extreme.values)
             asked = [(extreme.name, value, technique) for value in values for technique in WAYS]
-            measure = functools.partial(_driven, pool, asked)
+            row_of = functools.partial(_row, every=judged_pixels(context))
+            measure = functools.partial(_driven, pool, row_of, asked)
             found += context.kept(f"stability_{extreme.name}", measure)
     return found
 
 
-def _driven(pool: Executor, asked: Sequence[tuple[str, float, str]]) -> list[Row]:
-    return [row for row in pool.map(_row, asked) if row is not None]
+def judges() -> ProcessPoolExecutor:
+    """Processes for pictures to be judged in: the reference takes most of the time, on one core."""
+    workers = min(MOST_WORKERS, len(os.sched_getaffinity(0)))
+    return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"))
 
 
-def _row(asked: tuple[str, float, str]) -> Row | None:
+def judged_pixels(context: Context) -> int:
+    """Of how many pixels one is judged."""
+    return EVERY if context.size == "quick" else 1
+
+
+def _driven(
+    pool: Executor,
+    row_of: Callable[[tuple[str, float, str]], Row | None],
+    asked: Sequence[tuple[str, float, str]],
+) -> list[Row]:
+    return [row for row in pool.map(row_of, asked) if row is not None]
+
+
+def _row(asked: tuple[str, float, str], every: int) -> Row | None:
     """Of an extreme, a value and a technique; None where it is not asked to draw that."""
     name, value, technique = asked
     (extreme,) = (one for one in EXTREMES if one.name == name)
@@ -216,11 +230,14 @@ def _row(asked: tuple[str, float, str]) -> Row | None:
     if not way.drives(extreme, value, case):
         return None
     words = {"scene": f"{name} {value:g}", "extreme": name, "technique": technique}
-    return {**words, "value": value, **judged(way, case)}
+    return {**words, "value": value, **judged(way, case, every)}
 
 
-def judged(way: Way, case: Case) -> Row:
-    """How far the picture of a case is from the reference: `rough`, `far`, `warning` and `verdict`, or an `error`."""
+def judged(way: Way, case: Case, every: int = 1) -> Row:
+    """How far the picture of a case is from the reference: `rough`, `far`, `warning` and `verdict`, or an `error`.
+
+    every: of so many pixels one is judged.
+    """
     try:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", dg.DecalWarning)
@@ -230,11 +247,11 @@ def judged(way: Way, case: Case) -> Row:
     except dg.DecalError as error:
         return {"verdict": REFUSES, "error": str(error)}
     drawn = frame.image[..., :3].reshape(-1, 3) / 255.0
-    wrong = np.arange(len(drawn))
+    pixels = wrong = np.arange(0, len(drawn), every)
     left = []
     for sight in way.sights:
         wrong = wrong[~_explained(scene, case, drawn, wrong, sight)]
-        left.append(len(wrong) / len(drawn))
+        left.append(len(wrong) / len(pixels))
     shares = {"rough": left[-2], "far": left[-1]}
     row: Row = {**shares, "verdict": verdict_of(**shares, warns=bool(said))}
     return {**row, "warning": str(said[0].message)} if said else row

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def chosen(context: Context, drawn: Map) -> dict[str, dg.Camera]:
     """The views that a report of this size is made of."""
     every = views(drawn)
-    names = context.chosen(("close",), ("oblique", "close"), ("overview", "oblique", "close", "grazing"))
+    names = context.chosen(("close",), ("oblique",), ("overview", "oblique", "close", "grazing"))
     return {name: every[name] for name in names}
 
 
