@@ -54,7 +54,7 @@ SHORT = {
 }
 MOST_WORKERS = 8  # each may hold some gigabytes
 # Of a quick report every so many pixels are judged: no divisor of a row's, so that they are scattered.
-EVERY = 7
+EVERY = 13
 LEAST_DRAWN = 1e-5  # where curves of shares meet the axis
 
 TITLE = "Stability"
