@@ -172,6 +172,8 @@ REASONS = {
         (("overlap", "static bvh"), ("overlap", "static thoeny")),
         "trees of boxes repeat each feature in every cell, up to the driver's largest array",
     ),
+    ("overlap", "loops"): "each cell of a view names all features over it, up to the driver's largest array",
+    ("overlap", "dynamic lists"): "a pixel's list has room for 60,000 segments",
     **dict.fromkeys(
         (("vertices", "static bvh"), ("vertices", "static thoeny")),
         "its trees of boxes have more nodes than an array that shaders read",
