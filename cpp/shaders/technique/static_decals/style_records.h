@@ -12,10 +12,11 @@
 // Flags, counts and colours are bits of a float. A line's words are in units of 2^scale quanta. The record at 0 is that of
 // plain strokes and fills. The miter limit is the cosine of the largest turn that is still mitred.
 //
-// Lines whose corners and ends are not all round are JOINED: an edge is a bar alone; between two edges that follow each other there
-// is a corner; an edge of no length is a disc, or a SQUARE's dot with sides along x and y; a MOVE lifts the pen, even to where the run has come to. Where it has a pattern,
-// a word follows each MOVE: how far along the period it is, as a fraction of PHASE_ONE. There a MOVE to where the run has come to
-// keeps the corner, as the pattern begins anew where a ring closes, unless PHASE_LIFTS is set: another part of the line begins.
+// Lines whose corners and ends are not all round are JOINED: an edge is a bar alone; between two edges that follow each other
+// there is a corner; an edge of no length is a dot, a disc or with SQUARE a square along x and y; a MOVE lifts the pen, even to
+// where the run has come to. Where it has a pattern, a word follows each MOVE: how far along the period it is, as a fraction of
+// PHASE_ONE. There a MOVE to where the run has come to keeps the corner, as the pattern begins anew where a ring closes, unless
+// PHASE_LIFTS is set: another part of the line begins.
 //
 //     plain    MOVE a   b    c          joined   MOVE a   a    b    c          with a pattern   MOVE a   phase   b    c
 //              (a====(b====(c                    (a)  a====b<c====c

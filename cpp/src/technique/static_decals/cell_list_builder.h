@@ -47,7 +47,7 @@ public:
         if (cells_[cell].slot == slot)
             cells_[cell].last = no_point;
     }
-    // A joined stroke's disc.
+    // A joined stroke's round end, or a dot.
     void add_dot(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase);
     void add_covers(uint32_t cell, uint32_t slot, uint32_t flags);
     bool has_group(uint32_t cell, uint32_t slot) const { return cells_[cell].slot == slot; }
