@@ -32,26 +32,24 @@ SMALL_PICTURE = (16, 16)
 def interleaved(runs: int, *measures: Measure, patience: float = math.inf) -> Times:
     """The medians of all that the measures give, over `runs` rounds in which each runs once, and their spreads.
 
-    A first round is thrown away, but of measures that take longer in it than `patience` seconds: they are not repeated.
-    `name`_spread, of times with names in _ms, is half of what lies between the quartiles, as a share of the median; one
-    round has none.
+    A round before them is thrown away, but of measures that take longer in it than `patience` seconds: for those it is
+    the first of the rounds. `name`_spread, of times with names in _ms, is half of what lies between the quartiles, as a
+    share of the median; one round has none.
     """
-    repeated: list[Measure] = []
-    once: Times = {}
+    rounds: list[list[Times]] = []
     for measure in measures:
         started = time.monotonic()
         times = measure()
-        if time.monotonic() - started <= patience:
-            repeated.append(measure)
-        else:
-            once.update(times)
-    rounds = [{name: ms for measure in repeated for name, ms in measure().items()} for _ in range(runs)]
-    medians = {name: statistics.median(times[name] for times in rounds) for name in rounds[0]}
-    if runs == 1:
-        return {**medians, **once}
+        rounds.append([times] if time.monotonic() - started > patience else [])
+    for _ in range(runs):
+        for measure, found in zip(measures, rounds, strict=True):
+            if len(found) < runs:
+                found.append(measure())
+    values = {name: [times[name] for times in found] for found in rounds for name in found[0]}
+    medians = {name: statistics.median(some) for name, some in values.items()}
     timed = [name for name, value in medians.items() if name.endswith("_ms") and value > 0.0]
-    spreads = {f"{name}_spread": spread([times[name] for times in rounds]) for name in timed}
-    return {**medians, **spreads, **once}
+    spreads = {f"{name}_spread": spread(values[name]) for name in timed if runs > 1}
+    return {**medians, **spreads}
 
 
 def spread(values: list[float]) -> float:

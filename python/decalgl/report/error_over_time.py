@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 TITLE = "Error against run time"
 TOGETHER = 6  # renderers that are held at once
 ERROR = "error at borders (rms, of 1)"  # of the axes
-PATIENCE = 0.3  # seconds: frames that take longer are drawn once
+PATIENCE = 0.3  # seconds: frames that take longer need no round before those that count
 ABOUT = (
     "Each point is a technique with a setting. Time is that of a whole frame, and of what it adds to"
     " terrain and composing, both divided by the floor, a pass that reads depth and writes a colour for every"
-    f" pixel; frames of more than {PATIENCE:g} s are drawn once. The error is the root mean square of the"
+    " pixel. The error is the root mean square of the"
     " difference to the reference, of 1, over the pixels of a crop that"
     " a border passes (an edge's), over all pixels of the crop (the image's), and of the coverage alone. Dynamic lines"
     " are as wide as on the screen and are compared with a reference that draws them so; techniques that draw only"

@@ -32,7 +32,7 @@ WIDTH = 2.0
 VIEWS = ("overview", "oblique", "close")
 PICTURES = (2.0 / 3.0, 1.0, 2.0)  # of the run's picture: 1280 x 720 to 3840 x 2160
 STEPS = ("simplify", "compact vertices", "cull", "compact segments", "project", "bins")
-PATIENCE = 10.0  # seconds: frames that take longer are drawn once
+PATIENCE = 10.0  # seconds: frames that take longer need no round before those that count
 # Segments of a piece of a line, of which fewer lines are made: few lines lie as the many do.
 PIECE = 100
 # What each method holds for a view.

@@ -73,7 +73,7 @@ MODES: tuple[tuple[Looks, tuple[str, ...]], ...] = (
     ({"coverage": "thoeny"}, ("coverage",)),
 )
 FEW = 2  # rounds of what takes many passes
-PATIENCE = 1.0  # seconds: frames that take longer are drawn once
+PATIENCE = 1.0  # seconds: frames that take longer need no round before those that count
 
 
 def measure(work: Workload, records: Records) -> None:
@@ -102,7 +102,7 @@ def _styles(work: Workload, records: Records, kind: str, index: str) -> None:
 
 
 def _modes(work: Workload, records: Records, kind: str, index: str) -> None:
-    """Each beside none; what takes long, as trees with 64 walks a pixel do, once."""
+    """Each beside none."""
     scene = _scene(work, kind, {})
     for options, modes in MODES:
         if "coverage" in options and kind != "isolines":
