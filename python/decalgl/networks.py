@@ -80,7 +80,7 @@ class NetworkCategory:
     cap: how lines end: "round", "square", "butt" or a drop-off of your own, an array (512, 512) from 0 at the line
         to 1 where its field ends: row 0 lies on the line, column 0 at its end. Or a dict by the node's grade: how
         many segments meet there, {1: "butt", 3: "round"}; 4 stands for four and more.
-    slope_correction: None, "tangent" or "thoeny", as `Scene.add_lines` has it.
+    slope_correction: None, "tangent" or "thoeny", as `Scene.add_lines` has it; lengths of dashes stay those on the map.
     dash: as `Scene.add_lines` has it, or a `Pattern` of arrows and the like.
     texture: an array (rows, columns, 4) of bytes, R, G, B, A; columns go along the line, rows from its middle to the
         border of the main colour. texture_length: metres that its columns take up.

@@ -237,8 +237,8 @@ class Scene:
         casing: a `Casing` under the lines.
         bands: colours across the line, [(reach, colour), ...] from its middle outwards, each to a share of the half
             width, the last to 1. They take the place of the line's colour, whose opacity they keep.
-        slope_correction: None, widths as they are on the map; "tangent", as they are on the slope; "thoeny",
-            narrower on slopes seen from the side (Thöny 2018).
+        slope_correction: None, widths and lengths of dashes as they are on the map; "tangent", as they are on the
+            slope; "thoeny", widths narrower on slopes seen from the side (Thöny 2018).
         widest: metres that lines may be widened to later without preparing anew.
         order: "feature" (later on top), "size" (longer on top), or a column or numbers (higher on top,
             features without one lowest).

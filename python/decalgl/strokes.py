@@ -39,8 +39,9 @@ class PatternMark:
 class LinePattern:
     """Marks that repeat along a line every `period`, `offset` in where it begins.
 
-    units: "m", metres on the map; "px", pixels: as many metres of the map as 2**-k a pixel, where 2**k is the power of
-        two next to how many pixels a metre takes there, seen head-on.
+    units: "m", metres on the map, of strokes with slope correction "tangent" on the ground; "px", pixels: as many
+        metres of the map as 2**-k a pixel, where 2**k is the power of two next to how many pixels a metre takes there,
+        seen head-on.
     """
 
     period: float

@@ -13,6 +13,7 @@ from style_views import named
 from styled import (
     BANDS,
     BROWN,
+    CAPS,
     CORNERS,
     GREY,
     TEAL,
@@ -196,6 +197,29 @@ def on_slopes(correction: Literal["thoeny", "tangent"]) -> View:
 def tangent_slopes() -> View:
     """Strokes as wide as they are on steep ground."""
     return on_slopes("tangent")
+
+
+@named
+def dashes_up_slopes() -> View:
+    """Patterns by lengths on steep ground: segments over many triangles, rings, and lines with lengths on the map."""
+    scene = steep_ground()
+    ends = np.array([(-85.0, -14.0), (-20.0, -1.0), (85.0, 16.0)])
+    ways = [
+        [ends[:: 1 if i % 2 else -1] + np.array([0.0, y])] for i, y in enumerate(np.linspace(-60.0, 60.0, 12))
+    ]
+    patterns = (dashes(9.0, (0.0, 5.0), offset=2.0), dashes(11.0, (1.0, 8.0, 1.0, 0.2)))
+    styles = [
+        StrokeStyle(CORNERS[i % 3], CAPS[i // 2 % 3], slope_correction=correction, pattern=patterns[i % 2])
+        for i, correction in enumerate(("tangent", "tangent", "none", "tangent", "tangent", "thoeny"))
+    ]
+    looks = stroke(12, 4.0, tints(12, 44, 0.8), styles)
+    under = stroke(12, 6.0, (*GREY, 1.0), StrokeStyle(slope_correction="tangent"))
+    styled(scene, "lines", ways, stroke=looks, casing=under)
+    rings = [[circle(x, y, 17.0, 4), circle(x, y, 8.0, 3)] for x in (-50.0, 0.0, 50.0) for y in (-30.0, 30.0)]
+    rim = StrokeStyle("round", slope_correction="tangent", pattern=patterns[0])
+    tinted = fill(6, tints(6, 45, 0.4))
+    styled(scene, "polygons", rings, fill=tinted, stroke=stroke(6, 3.0, (*GREY, 0.9), rim))
+    return aslant(scene, 170.0, 50.0)
 
 
 @named

@@ -51,6 +51,17 @@ def shaken(scene: dg.Scene, reach: float, seed: int) -> dg.Scene:
     return with_features(scene, tables)
 
 
+def pixel_metres(view: View, depth: FloatArray) -> FloatArray:
+    """How wide (n,) a pixel is where something is seen head-on at these depths (n,)."""
+    origin, direction = view.camera.rays(
+        np.array([[0.0, 0.0], [1.0, 0.0]]) + 0.5 * np.array(view.size), view.size
+    )
+    across: FloatArray = np.linalg.norm(
+        np.diff(origin, axis=0) + depth[:, None] * np.diff(direction, axis=0), axis=1
+    )
+    return across
+
+
 def unexplained(
     view: View,
     surface: ref.Surface,
@@ -61,8 +72,10 @@ def unexplained(
 
     reach: metres that rounding moves a vertex or a position by at most. is_right: whether positions, moved, look
     right in a scene; with the indices of those that are asked about. A dash's end, a corner of a short segment and a
-    mitre's tip move farther than the vertices do, and farther than any distance to an edge tells.
+    mitre's tip move farther than the vertices do, and farther than any distance to an edge tells. Which triangle's
+    slope a position has is what the rasteriser says, who moves the triangles' corners by `SNAP` pixels.
     """
+    snapped = SNAP * pixel_metres(view, surface.depth)
     left = np.arange(len(surface.depth))
     for seed in range(TRIES):
         if not len(left):
@@ -71,7 +84,8 @@ def unexplained(
         moves = np.random.default_rng([1, seed]).uniform(-nearer, nearer, (len(left), 2))
         moved = surface[left]
         world = moved.world + np.column_stack([moves, np.zeros(len(left))])
-        _, gradient = surface_below(view.scene, world[:, :2])
+        aside = np.random.default_rng([3, seed]).uniform(-1.0, 1.0, (len(left), 2)) * snapped[left, None]
+        _, gradient = surface_below(view.scene, world[:, :2] + aside)
         moved = ref.Surface(world, moved.depth, gradient)
         left = left[~is_right(shaken(view.scene, nearer, seed), moved, left)]
     return left

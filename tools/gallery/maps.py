@@ -117,7 +117,7 @@ def styled_map() -> Image.Image:
 
 
 def _steep_scene(correction: str | None) -> dg.Scene:
-    """A ridge as steep as 65 degrees, with lines along and across it."""
+    """A ridge as steep as 65 degrees, with lines along it and dashed ones across."""
     x = np.linspace(-200.0, 200.0, 161)
     ridge = 150.0 * np.exp(-((x / 62.0) ** 2))
     ground = dg.Terrain(np.tile(ridge, (161, 1)).astype(np.float32), -200.0, 200.0, 2.5, 2.5)
@@ -126,7 +126,7 @@ def _steep_scene(correction: str | None) -> dg.Scene:
     across = [LineString([(-190, b), (190, b)]) for b in (-120, -40, 40, 120)]
     looks: dict[str, Any] = {"width": 10, "width_units": "m", "slope_correction": correction}
     scene.add_lines(along, color=BLUE, **looks)
-    scene.add_lines(across, color=RED, **looks)
+    scene.add_lines(across, color=RED, dash=(20, 12), cap="butt", **looks)
     return scene
 
 

@@ -27,7 +27,7 @@ namespace decalgl {
 
 // Goes up with every change of what the sections of a prepared scene hold or mean, also when the same scene
 // comes to be prepared in another way. Files of other versions are refused, and caches made anew.
-constexpr uint32_t archive_format = 4;
+constexpr uint32_t archive_format = 5;
 
 constexpr size_t archive_name_bytes = 48;
 constexpr size_t archive_alignment = 64;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "decalgl/core/error.h"
+#include "technique/ground_lengths.h"
 
 namespace decalgl {
 namespace {
@@ -115,8 +116,11 @@ void for_each_run(const Scene& scene, const RendererOptions& options, const Memo
     for (size_t begin = 0; begin < parts.size(); begin = end) {
         const TechniqueChoice& choice = parts[begin].layer.technique;
         std::vector<Layer> run;
-        for (; end < parts.size() && parts[end].layer.technique == choice; ++end)
+        for (; end < parts.size() && parts[end].layer.technique == choice; ++end) {
             run.push_back(parts[end].layer);
+            if (choice.name == "static")
+                run.back().features = on_ground(run.back().features, run.back(), prepared.terrain, memory);
+        }
         input.layers = run;
         input.first_layer = parts[begin].place;
         const std::string technique =

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "decalgl/core/error.h"
+#include "technique/ground_lengths.h"
 
 namespace decalgl {
 namespace {
@@ -39,6 +40,8 @@ public:
              part < static_cast<size_t>(features.feature_offsets[feature + 1]); ++part) {
             const Span<const double> vertices = features.part(part);
             coordinates_.insert(coordinates_.end(), vertices.begin(), vertices.end());
+            const Span<const float> slants = features.slants_of(part);
+            slants_.insert(slants_.end(), slants.begin(), slants.end());
             part_offsets_.push_back(static_cast<int64_t>(coordinates_.size() / 2));
         }
         feature_offsets_.push_back(static_cast<int64_t>(part_offsets_.size()) - 1);
@@ -70,8 +73,9 @@ public:
             layer_.fill.colors = {0, 0, 0, 0};
         keep_styles(like_.stroke, layer_.stroke);
         keep_styles(like_.casing, layer_.casing);
-        layer_.features = Features::own(layer_.features.kind, std::move(coordinates_),
-                                        std::move(part_offsets_), std::move(feature_offsets_));
+        layer_.features =
+            Features::own(layer_.features.kind, std::move(coordinates_), std::move(part_offsets_),
+                          std::move(feature_offsets_), {}, std::move(slants_));
         return std::move(layer_);
     }
 
@@ -102,6 +106,7 @@ private:
     const Layer& like_;
     Layer layer_;
     std::vector<double> coordinates_;
+    std::vector<float> slants_;
     std::vector<int64_t> part_offsets_{0};
     std::vector<int64_t> feature_offsets_{0};
 };
@@ -119,7 +124,10 @@ LayerSources::LayerSources(const TechniqueInput& input)
     : base_(std::make_shared<const std::vector<Layer>>(layers_from_first(input))),
       input_(*base_),
       patched_(base_->size()),
-      removed_(base_->size()) {
+      removed_(base_->size()),
+      memory_(input.memory) {
+    if (input.terrain != nullptr)
+        ground_ = *input.terrain;
     for (const Layer& layer : *base_)
         counts_.push_back(layer.features.feature_count());
 }
@@ -139,9 +147,10 @@ const StrokeStyle& LayerSources::style_of(const Decal& decal) const {
 
 Layer LayerSources::make_patch(const LayerEdit& edit) const {
     const Layer& like = input_[edit.layer];
+    const Features geometry = on_ground(edit.geometry, like, ground_, memory_);
     LayerGatherer patch(like);
-    for (size_t i = 0; i < edit.geometry.feature_count(); ++i) {
-        patch.add_geometry(edit.geometry, i);
+    for (size_t i = 0; i < geometry.feature_count(); ++i) {
+        patch.add_geometry(geometry, i);
         if (i < edit.replaced.size()) {
             const Place old = find(edit.layer, edit.replaced[i]);
             patch.add_look(*old.layer, old.feature);

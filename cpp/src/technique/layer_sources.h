@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "decalgl/technique/technique.h"
+#include "decalgl/terrain/heightfield.h"
 
 namespace decalgl {
 
@@ -47,6 +48,8 @@ private:
     std::vector<std::unordered_map<uint32_t, Place>> patched_;  // of each layer
     std::vector<std::unordered_set<uint32_t>> removed_;
     std::vector<size_t> counts_;
+    Heightfield ground_;
+    MemoryAccount memory_;
 };
 
 }  // namespace decalgl

@@ -15,6 +15,7 @@ struct OwnedArrays {
     std::vector<int64_t> part_offsets;
     std::vector<int64_t> feature_offsets;
     std::vector<int64_t> rows;
+    std::vector<float> slants;
 };
 
 void require_offsets(Span<const int64_t> offsets, size_t total, const char* what, const std::string& layer) {
@@ -32,12 +33,14 @@ void require_offsets(Span<const int64_t> offsets, size_t total, const char* what
 }  // namespace
 
 Features Features::own(FeatureKind kind, std::vector<double> coordinates, std::vector<int64_t> part_offsets,
-                       std::vector<int64_t> feature_offsets, std::vector<int64_t> rows) {
+                       std::vector<int64_t> feature_offsets, std::vector<int64_t> rows,
+                       std::vector<float> slants) {
     auto arrays = std::make_shared<OwnedArrays>();
     arrays->coordinates = std::move(coordinates);
     arrays->part_offsets = std::move(part_offsets);
     arrays->feature_offsets = std::move(feature_offsets);
     arrays->rows = std::move(rows);
+    arrays->slants = std::move(slants);
     if (arrays->rows.empty() && !arrays->feature_offsets.empty()) {
         arrays->rows.resize(arrays->feature_offsets.size() - 1);
         for (size_t row = 0; row < arrays->rows.size(); ++row)
@@ -50,6 +53,7 @@ Features Features::own(FeatureKind kind, std::vector<double> coordinates, std::v
     features.part_offsets = {arrays->part_offsets.data(), arrays->part_offsets.size()};
     features.feature_offsets = {arrays->feature_offsets.data(), arrays->feature_offsets.size()};
     features.rows = {arrays->rows.data(), arrays->rows.size()};
+    features.slants = {arrays->slants.data(), arrays->slants.size()};
     features.storage = std::move(arrays);
     return features;
 }

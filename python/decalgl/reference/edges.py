@@ -92,7 +92,7 @@ def _stroke_distance(
     layer: LayerLike, decals: StrokeDecals, xy: FloatArray, slopes: Slopes | None, limit: float
 ) -> FloatArray:
     """Distance (n,) to the nearest border of a stroke, looked for farther and farther away."""
-    strokes = styled_strokes(layer.features, decals.stroke, decals.half_widths, decals.drawn)
+    strokes = styled_strokes(layer.features, decals.stroke, decals.half_widths, decals.drawn, slopes)
     nearest = np.full(len(xy), np.inf)
     if decals.stroke.follows_view:
         for strip in strips(xy):

@@ -78,7 +78,7 @@ def membership(
         (Thöny et al. 2018). Outlines that are cut by their rings, or drawn each over its fill, stay in order.
     """
     count = len(layer.features.rows)
-    finders = [_Finder(layer, decals, xy, nearest) for decals in decals_of(layer, only)]
+    finders = [_Finder(layer, decals, xy, slopes, nearest) for decals in decals_of(layer, only)]
     points, places, features, tints = ([np.empty(0, dtype=np.int64)] for _ in range(4))
     palette, first = [np.empty((0, 4))], 0
     cut = list(strips(xy))
@@ -106,7 +106,12 @@ class _Finder:
     """
 
     def __init__(
-        self, layer: LayerLike, decals: FillDecals | StrokeDecals, xy: FloatArray, nearest: bool
+        self,
+        layer: LayerLike,
+        decals: FillDecals | StrokeDecals,
+        xy: FloatArray,
+        slopes: Slopes | None,
+        nearest: bool,
     ) -> None:
         self.decals = decals
         self.nearest = nearest and not (
@@ -122,7 +127,7 @@ class _Finder:
             self.palette = _premultiplied(colors)
             return
         colors = _straight(decals.stroke.colors)
-        self.strokes = styled_strokes(layer.features, decals.stroke, decals.half_widths, decals.drawn)
+        self.strokes = styled_strokes(layer.features, decals.stroke, decals.half_widths, decals.drawn, slopes)
         palettes, self.bands_at = [colors], [0]
         for stroke in self.strokes:
             self.bands_at.append(sum(len(palette) for palette in palettes))

@@ -113,8 +113,9 @@ def slopes_of(scene: SceneLike, camera: CameraLike, size: Size, surface: Surface
 
 
 def _slopes(scene: SceneLike, view: Viewpoint, world: FloatArray, gradient: FloatArray) -> Slopes:
-    planes = screen_planes(view, world, gradient, Ground(scene)) if follows_view(scene) else None
-    return Slopes(gradient, view.forward, planes)
+    ground = Ground(scene)
+    planes = screen_planes(view, world, gradient, ground) if follows_view(scene) else None
+    return Slopes(gradient, view.forward, planes, ground)
 
 
 def composite(

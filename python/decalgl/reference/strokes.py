@@ -18,12 +18,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .chains import Chains
+from .ground_lengths import GroundLengths
 from .points import Strip, candidate_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from .contract import BoolArray, FeaturesLike, FloatArray, IntArray, PatternLike, StrokeLike, StyleLike
+    from .ground import Ground
     from .screen import ScreenPlanes
 
 # How a bar ends.
@@ -37,16 +39,18 @@ class Slopes:
     """What slope correction and widths on the screen need.
 
     gradient: (n, 2) of the ground at points. forward: the camera's unit view direction (3,). planes: of the points, on
-    the screen; None where no stroke's width follows the view.
+    the screen; None where no stroke's width follows the view. ground: what patterns of strokes with the correction
+    "tangent" lie on; None for level ground.
     """
 
     gradient: FloatArray
     forward: FloatArray
     planes: ScreenPlanes | None = None
+    ground: Ground | None = None
 
     def __getitem__(self, which: IntArray) -> Slopes:
         planes = None if self.planes is None else self.planes[which]
-        return Slopes(self.gradient[which], self.forward, planes)
+        return Slopes(self.gradient[which], self.forward, planes, self.ground)
 
 
 class Touch(NamedTuple):
@@ -61,7 +65,10 @@ class Touch(NamedTuple):
 
 @dataclass(frozen=True)
 class Bars:
-    """Segments: start and vector (n, 2), arc (n,) of the start, how they begin and end (n,)."""
+    """Segments: start and vector (n, 2), arc (n,) of the start, how they begin and end (n,).
+
+    place: (n,) of the segments in `lengths`, which tells lengths along the ground; None for those on the map.
+    """
 
     start: FloatArray
     vector: FloatArray
@@ -70,9 +77,14 @@ class Bars:
     ends: IntArray
     half_width: FloatArray
     feature: IntArray
+    place: IntArray | None = None
+    lengths: GroundLengths | None = None
 
     def __getitem__(self, which: IntArray) -> Bars:
-        return Bars(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+        start, vector, arc = self.start[which], self.vector[which], self.arc[which]
+        begins, ends, half_width = self.begins[which], self.ends[which], self.half_width[which]
+        place = None if self.place is None else self.place[which]
+        return Bars(start, vector, arc, begins, ends, half_width, self.feature[which], place, self.lengths)
 
     def reach(self, style: StyleLike) -> FloatArray:
         """How far (n,) from its segment a bar covers anything."""
@@ -96,10 +108,15 @@ class Bars:
         np.minimum(inside, -after, out=inside, where=self.ends != ROUNDED)
         if style.pattern is None:
             return np.minimum(inside, half_width - gauge), gauge, half_width
-        # The foot of the perpendicular is measured on the slope, arc length on the map.
-        on_map = t / length * np.hypot(*self.vector.T)
-        covered = pattern_clearance(style.pattern, self.arc + on_map, gauge, half_width, along=True)
+        covered = pattern_clearance(style.pattern, self.arc_at(t / length), gauge, half_width, along=True)
         return np.minimum(inside, covered), gauge, half_width
+
+    def arc_at(self, share: FloatArray) -> FloatArray:
+        """Metres (n,) along the line at shares of the segments' ways."""
+        if self.lengths is None or self.place is None:
+            on_map: FloatArray = self.arc + share * np.hypot(*self.vector.T)
+            return on_map
+        return self.arc + self.lengths.at(self.place, share)
 
 
 @dataclass(frozen=True)
@@ -248,26 +265,40 @@ def _neighbours(
 
 
 def styled_strokes(
-    features: FeaturesLike, stroke: StrokeLike, half_widths: FloatArray, drawn: BoolArray
+    features: FeaturesLike,
+    stroke: StrokeLike,
+    half_widths: FloatArray,
+    drawn: BoolArray,
+    slopes: Slopes | None = None,
 ) -> list[StyledStroke]:
-    """The strokes of the drawn features, mask (features,), by style. half_widths: (features,) in metres."""
+    """The strokes of the drawn features, mask (features,), by style.
+
+    half_widths: (features,) in metres. slopes: of any points of the scene, for the ground.
+    """
+    ground = None if slopes is None else slopes.ground
     style_of = np.zeros(len(drawn), dtype=np.int64) if stroke.style_of is None else stroke.style_of
     found = []
     for index, style in enumerate(stroke.styles):
         wanted = drawn & (style_of == index)
         if wanted.any():
-            bars, joints = _pieces(Chains.of(features, wanted), style, half_widths, stroke.follows_view)
+            along = ground if style.slope_correction == "tangent" and style.pattern is not None else None
+            bars, joints = _pieces(
+                Chains.of(features, wanted), style, half_widths, stroke.follows_view, along
+            )
             found.append(StyledStroke(style, bars, joints))
     return found
 
 
 def _pieces(
-    chains: Chains, style: StyleLike, half_widths: FloatArray, on_screen: bool
+    chains: Chains, style: StyleLike, half_widths: FloatArray, on_screen: bool, ground: Ground | None
 ) -> tuple[Bars, Joints]:
+    """The pieces of strokes of one style. ground: what lengths are measured along; None for the map."""
     following = chains.following()
     vector = chains.vertices[following] - chains.vertices
     length = np.hypot(*vector.T)
-    walked = np.cumsum(length) - length
+    lengths = None if ground is None else GroundLengths(ground, chains.vertices, vector)
+    steps = length if lengths is None else lengths.total
+    walked = np.cumsum(steps) - steps
     arc = walked - walked[chains.first[chains.chain]]
     feature = chains.feature[chains.chain]
     half_width = half_widths[feature]
@@ -290,6 +321,8 @@ def _pieces(
         np.where(ends[following[one]], capped, joined),
         half_width[one],
         feature[one],
+        one,
+        lengths,
     )
     with np.errstate(invalid="ignore"):
         going = vector / length[:, None]

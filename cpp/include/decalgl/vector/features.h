@@ -3,6 +3,8 @@
 //   feature_offsets   feature f owns parts feature_offsets[f] .. feature_offsets[f + 1]
 //   part_offsets      part p owns vertices part_offsets[p] .. part_offsets[p + 1]
 //   coordinates       x, y of each vertex, float64, in the scene's coordinate system
+//   slants            of the edge that ends at each vertex, its length on the ground over that on the map, less than 0 where
+//                     that vertex only tells where the ground bends; empty where nothing is measured along the ground
 //
 // A polygon's parts are all its rings, exterior and interior alike and closed implicitly: what is inside
 // is decided by the even-odd rule over all of them. A line's parts are its polylines.
@@ -26,13 +28,15 @@ struct Features {
     Span<const int64_t> part_offsets;
     Span<const int64_t> feature_offsets;
     Span<const int64_t> rows;  // the row of each feature in the user's data
+    Span<const float> slants;
 
     // Keeps alive whatever the spans point into; several Features may share it.
     std::shared_ptr<const void> storage;
 
     // Takes the arrays over. `rows` may be empty: then feature f is row f.
     static Features own(FeatureKind kind, std::vector<double> coordinates, std::vector<int64_t> part_offsets,
-                        std::vector<int64_t> feature_offsets, std::vector<int64_t> rows = {});
+                        std::vector<int64_t> feature_offsets, std::vector<int64_t> rows = {},
+                        std::vector<float> slants = {});
 
     size_t feature_count() const { return rows.size(); }
     size_t part_count() const { return part_offsets.size() - 1; }
@@ -50,6 +54,14 @@ struct Features {
         const auto first = static_cast<size_t>(part_offsets[part_index]);
         const auto last = static_cast<size_t>(part_offsets[part_index + 1]);
         return coordinates.subspan(2 * first, 2 * (last - first));
+    }
+
+    // None where there are none at all.
+    Span<const float> slants_of(size_t part_index) const {
+        if (slants.empty())
+            return {};
+        const auto first = static_cast<size_t>(part_offsets[part_index]);
+        return slants.subspan(first, static_cast<size_t>(part_offsets[part_index + 1]) - first);
     }
 };
 

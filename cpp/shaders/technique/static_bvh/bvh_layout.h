@@ -5,7 +5,8 @@
 //
 //     segments      vertex, vertex                   strokes: the objects of the cells
 //     vertices      x, y                             of strokes, in quanta of the lattice
-//     owners        slot (, phase)                   the stroke of each vertex; where its pattern has come to
+//     owners        slot (, phase (, slant))         the stroke of each vertex; where its pattern has come to; of lengths along
+//                                                    it on the edge that ends there
 //
 //     exteriors     subtree, slot, first, count      fills: the objects of the cells
 //     interiors     subtree                          of the other rings, cell by cell

@@ -7,6 +7,7 @@
 // RINGS          a group of fills, else of strokes
 // BOTH           a group of fills and strokes, with INSET or OFFSET for strokes on one side of their rings
 // CORNERS        strokes are more than round; with PATTERNS, BANDS or SLOPES as some of them ask for
+// GROUND         some patterns are measured along the ground
 // HATCHES        some fills are of parallel lines
 // UNSORTED       segments lie along a Hilbert curve: the walk goes on to the end
 // NEAREST        the nearest line that covers the point is the only one seen
@@ -25,6 +26,7 @@
 #if defined(RINGS) && !defined(BOTH)
 #undef CORNERS
 #undef PATTERNS
+#undef GROUND
 #undef BANDS
 #undef SLOPES
 #undef UNSORTED
@@ -32,6 +34,9 @@
 #undef THOENY
 #elif !defined(CORNERS) && (defined(PATTERNS) || defined(BANDS) || defined(SLOPES))
 #define CORNERS
+#endif
+#if !defined(PATTERNS)
+#undef GROUND
 #endif
 #if defined(THOENY) && (defined(BOTH) || defined(IDS) || defined(SAMPLES))
 #undef THOENY

@@ -40,8 +40,8 @@ struct Run {
     bool plain_end;
     bool is_dot;
     vec2 phases;  // of the start and the end, quanta
-    float along;  // from the start to the foot of the point, measured on the map
-    float stretch;  // of lengths along the segment, by its slope
+    float along;  // from the start to the foot of the point, as the pattern measures it
+    float stretch;  // of such a length by the slope at the pixel
 };
 
 vec2 direction_of(mat2 lengths, ivec2 way) {
@@ -75,8 +75,11 @@ Run run_to(uvec2 segment, ivec2 point, mat2 lengths) {
     run.is_dot = way == ivec2(0);
 #ifdef PATTERNS
     run.phases = vec2(uintBitsToFloat(texelFetch(bvh_owners, start).g), uintBitsToFloat(texelFetch(bvh_owners, end).g));
-    run.along = dot(run.from_start, run.direction) / stretch;
     run.stretch = stretch;
+#ifdef GROUND
+    run.stretch /= uintBitsToFloat(texelFetch(bvh_owners, end).b);
+#endif
+    run.along = dot(run.from_start, run.direction) / run.stretch;
 #endif
     return run;
 }

@@ -71,8 +71,8 @@ uvec2 crossing_mask(Crossing crossing) {
 // Reads the group's next point, and says whether the edge to it decides for all samples alike.
 uint read_point(inout Group group, uint word) {
 #ifdef PATTERNS
-    if (group.pen.awaits_phase) {
-        read_phase(group.pen, word);
+    if (group.pen.awaited > 0) {
+        read_pattern(group.pen, word);
         return for_none;
     }
 #endif

@@ -33,7 +33,7 @@ struct Group {
     vec2 last;         // the last word's point
     Pen pen;
     Pen pen_before;    // the edge that comes next
-    float run;         // its length on the map
+    float run;         // its length on the pattern
 #endif
 };
 

@@ -106,7 +106,7 @@ uint next_alike(inout Group group, uint word, vec2 from, vec2 to) {
     vec2 point = point_of(word);
     bool starts = starts_edge(word);
     if (starts) move_pen(group.pen, group.style, point == group.last);
-    group.run = starts ? 0.0 : distance(point, group.last);
+    group.run = starts ? 0.0 : run_of(group.pen, point, group.last);
     group.last = point;
     group.pen_before = group.pen;
     if (!starts) move_on(group.pen, group.style, from, to, group.run);
@@ -146,7 +146,7 @@ uvec2 samples_in_corner(Group group, vec2 from, vec2 came, Bar next, float half_
 #endif
 
 #ifdef PATTERNS
-// Samples in the marks of a stroke's pattern, as far as they are wide. `run`: the edge's length on the map.
+// Samples in the marks of a stroke's pattern, as far as they are wide. `run`: the edge's length on the pattern.
 uvec2 samples_in_pattern(Group group, Bar bar, float periods, float run) {
     float per_unit = run / max(bar.run, 1e-6) * group.style.periods_per_unit;
     Phase phase = phase_of(periods + bar.t * per_unit, bar.axis * group.foot * per_unit);

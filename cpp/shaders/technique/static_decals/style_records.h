@@ -16,10 +16,11 @@
 // there is a corner; an edge of no length is a dot, a disc or with SQUARE a square along x and y; a MOVE lifts the pen, even to
 // where the run has come to. Where it has a pattern, a word follows each MOVE: how far along the period it is, as a fraction of
 // PHASE_ONE. There a MOVE to where the run has come to keeps the corner, as the pattern begins anew where a ring closes, unless
-// PHASE_LIFTS is set: another part of the line begins.
+// PHASE_LIFTS is set: another part of the line begins. Where it is TANGENT too, the pattern is measured along the ground: each
+// edge begins with a MOVE, and before the phase comes its slant (features.h), the bits of a float.
 //
 //     plain    MOVE a   b    c          joined   MOVE a   a    b    c          with a pattern   MOVE a   phase   b    c
-//              (a====(b====(c                    (a)  a====b<c====c
+//              (a====(b====(c                    (a)  a====b<c====c            along the ground MOVE a   slant   phase   b
 #ifndef DECALGL_STYLE_RECORDS_H
 #define DECALGL_STYLE_RECORDS_H
 

@@ -104,7 +104,7 @@ void read_stroke(inout Walk walk, vec2 point, bool starts) {
     bool joined = has(walk.style, STYLE_JOINED);
     if (starts) move_pen(walk.pen, walk.style, point == walk.last);
     vec2 from = starts ? to : walk.from;
-    float run = starts ? 0.0 : distance(point, walk.last);
+    float run = starts ? 0.0 : run_of(walk.pen, point, walk.last);
     float share = starts && joined ? not_covered : stroke_share(walk.style, walk.pen, from, to, run);
     if (!starts) move_on(walk.pen, walk.style, from, to, run);
     walk.share = min(walk.share, share);
@@ -117,8 +117,8 @@ void read_word(inout Walk walk, uint word) {
         open_group(walk, word);
         return;
     }
-    if (walk.pen.awaits_phase) {
-        read_phase(walk.pen, word);
+    if (walk.pen.awaited > 0) {
+        read_pattern(walk.pen, word);
         return;
     }
     vec2 point = point_of(word);

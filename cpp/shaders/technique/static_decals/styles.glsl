@@ -71,26 +71,36 @@ float pattern_width(Style style, float periods) {
 struct Pen {
     vec2 came;
     bool has_came;
-    bool awaits_phase;
+    int awaited;    // words of the pattern
     float periods;
+    float slant;    // of lengths along the pattern
 };
 
-const Pen lifted_pen = Pen(vec2(0.0), false, false, 0.0);
+const Pen lifted_pen = Pen(vec2(0.0), false, 0, 0.0, 1.0);
 
 // At a MOVE: whether the point is where the run has come to.
 void move_pen(inout Pen pen, Style style, bool stays) {
     bool patterned = has(style, STYLE_PATTERN);
     if (!stays || !patterned) pen = lifted_pen;
-    pen.awaits_phase = patterned;
+    if (patterned) pen.awaited = has(style, STYLE_TANGENT) ? 2 : 1;
 }
 
-void read_phase(inout Pen pen, uint word) {
-    if ((word & PHASE_LIFTS) != 0u) pen = lifted_pen;
+// A slant, of strokes that follow the ground, and then a phase.
+void read_pattern(inout Pen pen, uint word) {
+    if (--pen.awaited == 1) {
+        pen.slant = uintBitsToFloat(word);
+        return;
+    }
+    if ((word & PHASE_LIFTS) != 0u) pen.has_came = false;
     pen.periods = float(word & (uint(PHASE_ONE) - 1u)) / float(PHASE_ONE);
-    pen.awaits_phase = false;
 }
 
-// `run`: the edge's length on the map, in units.
+// The length of a stroke's next edge on its pattern, in units.
+float run_of(Pen pen, vec2 point, vec2 last) {
+    return pen.slant * distance(point, last);
+}
+
+// `run`: the edge's length on the pattern.
 void move_on(inout Pen pen, Style style, vec2 from, vec2 to, float run) {
     vec2 goes = from - to;
     bool is_edge = goes != vec2(0.0);
@@ -118,7 +128,7 @@ float dot_reach(Style style, vec2 at) {
 }
 
 // The share at which a joined stroke's next edge covers a point, with the corner before it. `from` and `to` lead from
-// the edge's ends to the point, `run` is its length on the map.
+// the edge's ends to the point, `run` is its length on the pattern.
 float joined_share(Style style, Pen pen, vec2 from, vec2 to, float run) {
     vec2 goes = from - to;
     float length_of_edge = length(goes);

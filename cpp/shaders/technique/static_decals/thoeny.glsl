@@ -137,11 +137,11 @@ void look_into(inout Layers layers, Cell cell, vec2 local, mat2 foot, uvec2 insi
             part = Nearest(out_of_reach, vec2(1.0, 0.0), 0.0);
             ended = word == LIST_END;
         } else {
-            bool phase = group.pen.awaits_phase;
+            bool is_pattern = group.pen.awaited > 0;
             bool dot_of_joined = starts_edge(word) && has(group.style, STYLE_JOINED);
             uint alike = read_point(group, word);
             if (!group.line) group.covered ^= alike == for_each ? crossing_mask(crossing_of(group, group.before, group.from)) : uvec2(alike);
-            else if (!phase && !dot_of_joined) part = nearer(part, group);
+            else if (!is_pattern && !dot_of_joined) part = nearer(part, group);
         }
     } while (!ended);
 }

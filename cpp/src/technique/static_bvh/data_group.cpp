@@ -295,8 +295,9 @@ std::optional<DecalGroup> build_in_grid(const TechniqueInput& input, const Decal
     Progress progress;
     const Stage all{&progress, 0.0, 1.0};
     const LatticeBox box = builder.lay(all);
-    const bool is_alike =
-        builder.needs().corners == needs.corners && builder.needs().patterns == needs.patterns;
+    const bool is_alike = builder.needs().corners == needs.corners &&
+                          builder.needs().patterns == needs.patterns &&
+                          builder.needs().ground == needs.ground;
     if (!is_alike || !(box.empty() || like.grid.box.holds(box)))
         return std::nullopt;
     return builder.build(like.grid, all);

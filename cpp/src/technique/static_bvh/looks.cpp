@@ -1,4 +1,5 @@
 #include "technique/static_bvh/looks.h"
+#include "technique/ground_lengths.h"
 
 #include <cmath>
 #include <cstring>
@@ -47,6 +48,7 @@ uint32_t LookWriter::write(const StrokeStyle& style) {
     const LinePattern& pattern = style.pattern;
     GroupNeeds& needs = group_.needs;
     needs.patterns |= pattern.period > 0.0;
+    needs.ground |= follows_ground(style);
     needs.bands |= !style.bands.empty();
     needs.slopes |= style.slope_correction != SlopeCorrection::none;
     needs.corners |= needs.patterns || needs.bands || needs.slopes || style.corner != Corner::round ||

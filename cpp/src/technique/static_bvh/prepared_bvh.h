@@ -105,6 +105,7 @@ struct GroupNeeds {
     bool translucency = false;
     bool corners = false;  // or caps that are not round, or anything below
     bool patterns = false;
+    bool ground = false;  // some of those patterns are measured along it
     bool bands = false;
     bool slopes = false;
     bool hatches = false;
@@ -127,7 +128,8 @@ struct GroupOf {
     Array<Object> objects;
 
     Array<LatticePoint> vertices;
-    Array<uint32_t> owners;  // a slot for each vertex; with patterns a slot and the bits of a phase
+    Array<uint32_t>
+        owners;  // a slot for each vertex; with patterns the bits of a phase, along the ground of a slant too
     Array<Segment> segments;
 
     Array<LatticePoint> ring_vertices;
@@ -140,11 +142,15 @@ struct GroupOf {
             return objects[index];
         return {kind == GroupKind::strokes ? index | STROKE_OBJECT : index, NO_EXTERIOR};
     }
-    size_t owner_size() const { return needs.patterns ? 2 : 1; }
+    size_t owner_size() const { return needs.ground ? 3 : needs.patterns ? 2 : 1; }
     uint32_t owner(uint32_t vertex) const { return owners[owner_size() * vertex]; }
     // Where a stroke's pattern has come to, in quanta.
     float phase(uint32_t vertex) const {
-        return needs.patterns ? as_float(owners[2 * size_t{vertex} + 1]) : 0.0F;
+        return needs.patterns ? as_float(owners[owner_size() * vertex + 1]) : 0.0F;
+    }
+    // Of lengths along the pattern, on the edge that ends at a vertex.
+    float slant(uint32_t vertex) const {
+        return needs.ground ? as_float(owners[owner_size() * vertex + 2]) : 1.0F;
     }
     uint32_t slot_of(Object object) const {
         return object.is_stroke() ? owner(segments[object.segment()].first()) : exteriors[object.place].slot;

@@ -115,8 +115,8 @@ void StaticBvh::upload(std::shared_ptr<const bvh::PreparedBvh> prepared, Look& l
         if (group.kind != GroupKind::fills) {
             add("bvh_vertices", "static_bvh: vertices", GL_RG32I, group.vertices);
             add("bvh_segments", "static_bvh: segments", GL_RG32UI, group.segments);
-            add("bvh_owners", "static_bvh: vertices", group.needs.patterns ? GL_RG32UI : GL_R32UI,
-                group.owners);
+            static constexpr GLenum formats[] = {GL_R32UI, GL_RG32UI, GL_RGB32UI};
+            add("bvh_owners", "static_bvh: vertices", formats[group.owner_size() - 1], group.owners);
         }
         if (group.kind != GroupKind::strokes) {
             add("bvh_ring_vertices", "static_bvh: vertices", GL_RG32I, group.ring_vertices);
@@ -375,6 +375,7 @@ gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
     add_if(group.cut == OutlineMode::offset, "OFFSET");
     add_if(group.needs.corners, "CORNERS");
     add_if(group.needs.patterns, "PATTERNS");
+    add_if(group.needs.ground, "GROUND");
     add_if(group.needs.bands, "BANDS");
     add_if(group.needs.slopes, "SLOPES");
     add_if(group.needs.hatches, "HATCHES");

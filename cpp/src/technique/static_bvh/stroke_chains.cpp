@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "technique/ground_lengths.h"
 #include "technique/static_bvh/lattice_cut.h"
 
 namespace decalgl::bvh {
@@ -26,6 +27,7 @@ struct Part {
 struct ChainVertex {
     LatticePoint point;
     double length;  // metres from the part's beginning
+    float slant;    // of the edge that ends there, features.h
     bool plain;     // no corner and no cap
 };
 
@@ -33,22 +35,26 @@ struct ChainVertex {
 struct Chains {
     std::vector<LatticePoint> vertices;
     std::vector<double> lengths;
+    std::vector<float> slants;
     std::vector<Segment> segments;
 
     void clear() {
         vertices.clear();
         lengths.clear();
+        slants.clear();
         segments.clear();
     }
-    void add(LatticePoint point, double length) {
+    void add(LatticePoint point, double length = 0.0, float slant = 1.0F) {
         vertices.push_back(point);
         lengths.push_back(length);
+        slants.push_back(slant);
     }
 };
 
 // A part's vertices as they come, without those that repeat the one before.
 struct Way {
     std::vector<Place> places;
+    std::vector<float> slants;    // of the edges that end there
     std::vector<double> lengths;  // metres from the first vertex; one more for a closed way
     bool closed = false;
 
@@ -60,21 +66,28 @@ struct Way {
     }
 };
 
-Way way_of(Span<const double> coordinates, bool is_ring, const Lattice& lattice) {
+Way way_of(Span<const double> coordinates, Span<const float> slants, bool follows_ground, bool is_ring,
+           const Lattice& lattice) {
     Way way;
     const size_t count = coordinates.size() / 2;
     std::vector<size_t> kept;
-    for (size_t i = 0; i < count; ++i)
-        if (kept.empty() || coordinates[2 * i] != coordinates[2 * kept.back()] ||
-            coordinates[2 * i + 1] != coordinates[2 * kept.back() + 1])
-            kept.push_back(i);
     const auto same = [&](size_t i, size_t j) {
         return coordinates[2 * i] == coordinates[2 * j] && coordinates[2 * i + 1] == coordinates[2 * j + 1];
     };
+    for (size_t i = 0; i < count; ++i) {
+        const bool is_skipped = !follows_ground && !slants.empty() && slants[i] < 0.0F;
+        if (!is_skipped && (kept.empty() || !same(i, kept.back())))
+            kept.push_back(i);
+    }
     const bool repeats = kept.size() > 1 && same(kept.front(), kept.back());
     way.closed = is_ring || (repeats && kept.size() >= 4);
-    if (way.closed && repeats)
+    for (const size_t vertex : kept)
+        way.slants.push_back(follows_ground && !slants.empty() ? slants[vertex] : 1.0F);
+    if (way.closed && repeats) {
         kept.pop_back();
+        way.slants.front() = way.slants.back();
+        way.slants.pop_back();
+    }
     if (is_ring && kept.size() < 3)
         return way;
     double length = 0.0;
@@ -82,8 +95,9 @@ Way way_of(Span<const double> coordinates, bool is_ring, const Lattice& lattice)
         const double* at = &coordinates[2 * kept[i]];
         way.places.push_back({lattice.x_of(at[0]), lattice.y_of(at[1])});
         way.lengths.push_back(length);
-        const double* next = &coordinates[2 * kept[(i + 1) % kept.size()]];
-        length += std::hypot(next[0] - at[0], next[1] - at[1]);
+        const size_t after = (i + 1) % kept.size();
+        const double* next = &coordinates[2 * kept[after]];
+        length += std::abs(double{way.slants[after]}) * std::hypot(next[0] - at[0], next[1] - at[1]);
     }
     if (way.closed)
         way.lengths.push_back(length);
@@ -110,8 +124,11 @@ private:
         std::vector<ChainVertex> vertices;
         for (size_t i = 0; i < way.size(); ++i) {
             const LatticePoint point = rounded(way.places[i]);
+            const bool bends = way.slants[i] < 0.0F;
             if (vertices.empty() || !(vertices.back().point == point))
-                vertices.push_back({point, way.lengths[i], false});
+                vertices.push_back({point, way.lengths[i], std::abs(way.slants[i]), bends});
+            else
+                vertices.back().plain &= bends;
         }
         while (way.closed && vertices.size() > 1 && vertices.front().point == vertices.back().point)
             vertices.pop_back();
@@ -134,8 +151,11 @@ private:
             if (from == to)
                 continue;
             const double begin = way.lengths[i], step = way.lengths[i + 1] - begin;
-            write_chain({{from, begin + std::max(kept.first, 0.0) * step, kept.first > 0.0},
-                         {to, begin + std::min(kept.last, 1.0) * step, kept.last < 1.0}},
+            const float last = way.slants[(i + 1) % way.size()], slant = std::abs(last);
+            const bool starts_plain = kept.first > 0.0 || way.slants[i] < 0.0F;
+            const bool ends_plain = kept.last < 1.0 || last < 0.0F;
+            write_chain({{from, begin + std::max(kept.first, 0.0) * step, slant, starts_plain},
+                         {to, begin + std::min(kept.last, 1.0) * step, slant, ends_plain}},
                         neighbour(way, i, way.size() - 1, from), neighbour(way, i + 1, 1, to));
         }
     }
@@ -160,17 +180,17 @@ private:
 
     void write_chain(const std::vector<ChainVertex>& vertices, LatticePoint before, LatticePoint after) {
         if (with_guards_)
-            chains_.add(before, 0.0);
+            chains_.add(before);
         const auto first = static_cast<uint32_t>(chains_.vertices.size());
         for (size_t i = 0; i < vertices.size(); ++i) {
             if (i > 0)
                 write_segment(vertices[i - 1], vertices[i]);
-            chains_.add(vertices[i].point, vertices[i].length);
+            chains_.add(vertices[i].point, vertices[i].length, vertices[i].slant);
         }
         if (vertices.size() == 1)
             chains_.segments.push_back({first, first});
         if (with_guards_)
-            chains_.add(after, 0.0);
+            chains_.add(after);
     }
 
     // A segment from the last vertex, in pieces where it is long, to one that is not added yet.
@@ -189,7 +209,7 @@ private:
             const double share = double(piece) / pieces;
             chains_.add({a.point.x + static_cast<int32_t>(std::lrint(share * dx)),
                          a.point.y + static_cast<int32_t>(std::lrint(share * dy))},
-                        a.length + share * length * quantum_);
+                        a.length + share * length * quantum_ * double{b.slant}, b.slant);
         }
     }
 
@@ -226,7 +246,7 @@ public:
             require_size(segments, "segments");
         }
         grow(group_.vertices, vertices, "vertices", charge_);
-        grow(group_.owners, vertices * (group_.needs.patterns ? 2 : 1), "vertices", charge_);
+        grow(group_.owners, vertices * group_.owner_size(), "vertices", charge_);
         grow(segments_.values, segments, "segments", segments_.charge);
         for_parts([this](const Part& part, const Chains& chains) { copy(part, chains); });
     }
@@ -252,9 +272,11 @@ private:
                 chains.clear();
                 const DecalView& decal = strokes_[parts_[i].stroke].decal;
                 const double quantum = decal.style().pattern.period > 0.0 ? lattice_.quantum : 0.0;
+                const Features& features = decal.layer->features;
                 ChainWriter(group_.needs.corners, quantum, chains)
-                    .write(way_of(decal.layer->features.part(parts_[i].index),
-                                  decal.layer->features.kind == FeatureKind::polygons, lattice_));
+                    .write(way_of(features.part(parts_[i].index), features.slants_of(parts_[i].index),
+                                  follows_ground(decal.style()), features.kind == FeatureKind::polygons,
+                                  lattice_));
                 require_size(chains.vertices.size(), "vertices");
                 on_part(parts_[i], chains);
             }
@@ -265,15 +287,15 @@ private:
         const StrokeSlot& stroke = strokes_[part.stroke];
         std::copy(chains.vertices.begin(), chains.vertices.end(),
                   group_.vertices.begin() + part.first_vertex);
+        const size_t size = group_.owner_size();
         for (size_t i = 0; i < chains.vertices.size(); ++i) {
-            const size_t vertex = part.first_vertex + i;
-            if (!group_.needs.patterns) {
-                group_.owners[vertex] = stroke.slot;
-                continue;
-            }
+            uint32_t* owner = &group_.owners[size * (part.first_vertex + i)];
             const float phase = phase_at(chains.lengths[i], stroke.decal.style().pattern);
-            group_.owners[2 * vertex] = stroke.slot;
-            std::memcpy(&group_.owners[2 * vertex + 1], &phase, sizeof(phase));
+            owner[0] = stroke.slot;
+            if (group_.needs.patterns)
+                std::memcpy(owner + 1, &phase, sizeof(phase));
+            if (group_.needs.ground)
+                std::memcpy(owner + 2, &chains.slants[i], sizeof(float));
         }
         for (size_t i = 0; i < chains.segments.size(); ++i) {
             const Segment& each = chains.segments[i];

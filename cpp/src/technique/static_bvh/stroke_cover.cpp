@@ -73,8 +73,8 @@ double styled_reach(const DecalGroup& group, Segment segment, double half_width,
     const auto longer = [&](bool ends) { return ends && look.cap == Cap::square ? half_width : slack; };
     const Vector2 own = direction(start, end);
     const Vector2 beyond{longer(before == start && !run.plain_start), longer(end == after && !run.plain_end)};
-    // Patterns follow the length on the map.
-    const double stretch = length(measured(start, end)) / length(way(start, end));
+    const double stretch =
+        length(measured(start, end)) / (length(way(start, end)) * double{group.slant(run.end)});
     double reach =
         within(bar_reach(from_start, from_end, own, beyond), begin + dot(from_start, own) / stretch);
     if (!run.plain_start)

@@ -13,6 +13,8 @@ constexpr double edges_per_cell = 0.7;
 
 constexpr size_t lookahead = 3;  // references
 
+constexpr double shortest_to_bend = 64.0;  // quanta from a place where the ground bends to the next vertex
+
 // How far an edge goes inside the bucket, |dx| + |dy|.
 int64_t length_inside(LatticePoint a, LatticePoint b) {
     const auto clamped = [](int64_t value) { return std::clamp<int64_t>(value, 0, BUCKET_QUANTA); };
@@ -40,7 +42,7 @@ void BucketBuilder::gather_stretch(const BucketReference& reference, const Latti
     const size_t edges = closes ? 1 : reference.count;
     for (size_t i = 0; i < edges; ++i)
         add_point(reference.first + i);
-    stretches_.push_back({reference.slot, first, points_.size() - 1, {}});
+    stretches_.push_back({reference.slot, first, points_.size() - 1, {}, 0});
     for (size_t i = first + 1; i < points_.size(); ++i)
         length_ += length_inside(points_[i - 1], points_[i]);
     reach_ += static_cast<double>(edges) * static_cast<double>(features_.shapes[reference.slot].half_width);
@@ -56,7 +58,7 @@ StrokePart part_with(const Features& table, size_t vertex) {
 
 // What is beyond the first and the last point of a stretch from one vertex to another.
 StrokeEnds BucketBuilder::ends_of(const StrokePart& part, size_t from, size_t to, const DecalShape& shape,
-                                  const LatticePoint& corner, const std::vector<double>& arcs) const {
+                                  const LatticePoint& corner, const std::vector<double>& lengths) const {
     StrokeEnds ends;
     const auto point = [&](size_t vertex) {
         const LatticePoint at = lattice_.nearest(part.vertices + 2 * vertex);
@@ -70,38 +72,78 @@ StrokeEnds BucketBuilder::ends_of(const StrokePart& part, size_t from, size_t to
     if (!ends.ends)
         ends.after = point(after);
     if (shape.periods_per_quantum > 0.0)
-        ends.periods = shape.first_period + arcs[from] / features_.grid->quantum * shape.periods_per_quantum;
+        ends.periods =
+            shape.first_period + lengths[from] / features_.grid->quantum * shape.periods_per_quantum;
     return ends;
 }
 
 // As above for a joined stroke, whose points all differ from the one before.
 void BucketBuilder::gather_joined(const BucketReference& reference, const LatticePoint& corner) {
     const DecalShape& shape = features_.shapes[reference.slot];
-    const StrokePart part = part_with(features_.features(reference.slot), reference.first);
+    const Features& table = features_.features(reference.slot);
+    const StrokePart part = part_with(table, reference.first);
     const bool closes = reference.count == closing_edge;
     const size_t from = closes ? part.end - 1 : reference.first - size_t{1};
     const size_t to = closes ? reference.first : reference.first + reference.count - size_t{1};
-    const size_t first = points_.size();
+    const size_t first = points_.size(), first_slant = slants_.size();
     const auto add_point = [&](size_t vertex) {
+        const float slant = table.slants.empty() ? 1.0F : table.slants[vertex];
+        if (slant < 0.0F && !shape.follows_ground && vertex != from && vertex != to)
+            return;
         const LatticePoint at = lattice_.nearest(part.vertices + 2 * vertex);
         const LatticePoint point{at.x - corner.x, at.y - corner.y};
-        if (points_.size() == first || !(points_.back() == point))
-            points_.push_back(point);
+        if (points_.size() != first && points_.back() == point) {
+            // The line's own vertex counts.
+            if (shape.follows_ground && slant > 0.0F)
+                slants_.back() = std::abs(slants_.back());
+            return;
+        }
+        points_.push_back(point);
+        if (shape.follows_ground)
+            slants_.push_back(slant);
     };
     add_point(from);
     for (size_t vertex = closes ? to : from + 1; vertex <= to; ++vertex)
         add_point(vertex);
+    if (shape.follows_ground)
+        drop_near_bends(first, first_slant);
     stretches_.push_back({reference.slot, first, points_.size() - 1,
-                          ends_of(part, from, to, shape, corner, features_.arcs_of(reference.slot))});
+                          ends_of(part, from, to, shape, corner, features_.lengths_of(reference.slot)),
+                          first_slant});
     for (size_t i = first + 1; i < points_.size(); ++i)
         length_ += length_inside(points_[i - 1], points_[i]);
     reach_ += static_cast<double>(points_.size() - first) * static_cast<double>(shape.half_width);
+}
+
+// Edges that are very short would turn as their ends are rounded, and the corners beside them too.
+void BucketBuilder::drop_near_bends(size_t first, size_t first_slant) {
+    const auto slant = [&](size_t point) -> float& { return slants_[first_slant + point - first]; };
+    size_t kept = first;
+    for (size_t i = first + 1; i < points_.size(); ++i) {
+        if (slant(i) < 0.0F && i + 1 < points_.size()) {
+            const double before = length_of(points_[kept], points_[i]);
+            const double after = length_of(points_[i], points_[i + 1]);
+            if (std::min(before, after) < shortest_to_bend) {
+                const double mean =
+                    (before * std::abs(double{slant(i)}) + after * std::abs(double{slant(i + 1)})) /
+                    (before + after);
+                slant(i + 1) = std::copysign(static_cast<float>(mean), slant(i + 1));
+                continue;
+            }
+        }
+        ++kept;
+        points_[kept] = points_[i];
+        slant(kept) = slant(i);
+    }
+    points_.resize(kept + 1);
+    slants_.resize(first_slant + kept + 1 - first);
 }
 
 void BucketBuilder::gather(uint32_t bucket, Span<const BucketReferences> runs) {
     stretches_.clear();
     corners_.clear();
     points_.clear();
+    slants_.clear();
     length_ = 0;
     reach_ = 0.0;
     const auto columns = static_cast<uint32_t>(features_.grid->columns);
@@ -196,7 +238,7 @@ void BucketBuilder::add_stroke(uint32_t slot, Span<const Stretch> stretches) {
     for (const Stretch& stretch : stretches)
         strokes_.mark_covered_cells(points_of(stretch));
     for (const Stretch& stretch : stretches)
-        strokes_.add_edges(points_of(stretch), stretch.ends);
+        strokes_.add_edges(points_of(stretch), stretch.ends, slants_of(stretch));
 }
 
 // The rings are needed only where the stroke is, and the stroke only where they do not cut it off.
@@ -214,7 +256,7 @@ void BucketBuilder::add_clipped(uint32_t clip, Span<const Stretch> rings, bool c
     for (const Stretch& stretch : strokes)
         strokes_.mark_covered_cells(points_of(stretch));
     for (const Stretch& stretch : strokes)
-        strokes_.add_edges(points_of(stretch), stretch.ends);
+        strokes_.add_edges(points_of(stretch), stretch.ends, slants_of(stretch));
 }
 
 }  // namespace decalgl

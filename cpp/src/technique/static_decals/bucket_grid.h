@@ -44,6 +44,10 @@ inline bool operator==(LatticePoint a, LatticePoint b) {
     return a.x == b.x && a.y == b.y;
 }
 
+inline double length_of(LatticePoint a, LatticePoint b) {
+    return std::hypot(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y));
+}
+
 class Lattice {
 public:
     explicit Lattice(const BucketGrid& grid)

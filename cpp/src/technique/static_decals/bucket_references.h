@@ -95,20 +95,26 @@ private:
     std::vector<uint64_t> keys_;
 };
 
-// What is drawn, in draw order: slots name the features, shapes say how they go into cells. `arcs`, for layers with a
-// pattern along lines: how far along its part each vertex is, in metres.
+// How far along its part each vertex of a layer is, in metres, where that has a pattern along lines.
+struct PartLengths {
+    std::vector<double> on_map;
+    std::vector<double> over_ground;
+};
+
+// What is drawn, in draw order: slots name the features, shapes say how they go into cells.
 struct OrderedFeatures {
     const TechniqueInput* input;
     const BucketGrid* grid;
     Span<const Decal> slots;
     Span<const DecalShape> shapes;
-    Span<const std::vector<double>> arcs;
+    Span<const PartLengths> lengths;  // of layers
 
     const Features& features(size_t slot) const {
         return input->layers[slots[slot].feature.layer - input->first_layer].features;
     }
-    const std::vector<double>& arcs_of(size_t slot) const {
-        return arcs[slots[slot].feature.layer - input->first_layer];
+    const std::vector<double>& lengths_of(size_t slot) const {
+        const PartLengths& own = lengths[slots[slot].feature.layer - input->first_layer];
+        return shapes[slot].follows_ground ? own.over_ground : own.on_map;
     }
     // Of a feature's vertices, counted in its layer: the first, and one past the last.
     size_t first_vertex(size_t slot) const { return vertex_at(slot, 0); }

@@ -12,6 +12,7 @@
 #include "decalgl/core/error.h"
 #include "decalgl/core/large_array.h"
 #include "decalgl/core/parallel.h"
+#include "technique/ground_lengths.h"
 #include "technique/layer_sources.h"
 #include "technique/static_decals/bucket_builder.h"
 #include "technique/static_decals/local_build.h"
@@ -21,6 +22,7 @@
 namespace decalgl {
 namespace {
 
+constexpr const char* account = "static: prepared";
 constexpr size_t buckets_per_chunk = 64;
 constexpr uint64_t most_texels = uint64_t{1} << (32 - COUNT_BITS);
 constexpr uint64_t most_cells = uint64_t{1} << (32 - LEVEL_BITS);
@@ -95,25 +97,34 @@ bool has_pattern(const Stroke& stroke) {
                        [](const StrokeStyle& style) { return style.pattern.period > 0.0; });
 }
 
-// How far each vertex is along its part, in metres, of the layers that have patterns along lines.
-std::vector<std::vector<double>> measure_arcs(const TechniqueInput& input) {
-    std::vector<std::vector<double>> arcs(input.layers.size());
+std::vector<double> measure_parts(const Features& features, Span<const float> slants, unsigned threads) {
+    std::vector<double> lengths(features.vertex_count(), 0.0);
+    const double* xy = features.coordinates.data();
+    parallel_for(features.part_count(), 256, threads, [&](size_t begin, size_t end) {
+        for (size_t part = begin; part < end; ++part)
+            for (auto i = static_cast<size_t>(features.part_offsets[part]) + 1;
+                 i < static_cast<size_t>(features.part_offsets[part + 1]); ++i) {
+                const double slant = slants.empty() ? 1.0 : std::abs(double{slants[i]});
+                lengths[i] = lengths[i - 1] +
+                             slant * std::hypot(xy[2 * i] - xy[2 * i - 2], xy[2 * i + 1] - xy[2 * i - 1]);
+            }
+    });
+    return lengths;
+}
+
+// Of the layers that have patterns along lines.
+std::vector<PartLengths> measure_lengths(const TechniqueInput& input) {
+    std::vector<PartLengths> lengths(input.layers.size());
     for (size_t l = 0; l < input.layers.size(); ++l) {
         const Layer& layer = input.layers[l];
         if (!has_pattern(layer.stroke) && !has_pattern(layer.casing))
             continue;
         const Features& features = layer.features;
-        const double* xy = features.coordinates.data();
-        arcs[l].assign(features.vertex_count(), 0.0);
-        parallel_for(features.part_count(), 256, input.threads, [&](size_t begin, size_t end) {
-            for (size_t part = begin; part < end; ++part)
-                for (auto i = static_cast<size_t>(features.part_offsets[part]) + 1;
-                     i < static_cast<size_t>(features.part_offsets[part + 1]); ++i)
-                    arcs[l][i] =
-                        arcs[l][i - 1] + std::hypot(xy[2 * i] - xy[2 * i - 2], xy[2 * i + 1] - xy[2 * i - 1]);
-        });
+        lengths[l].on_map = measure_parts(features, {}, input.threads);
+        if (follows_ground(layer.stroke) || follows_ground(layer.casing))
+            lengths[l].over_ground = measure_parts(features, features.slants, input.threads);
     }
-    return arcs;
+    return lengths;
 }
 
 std::vector<BucketReferences> make_all_references(const OrderedFeatures& features,
@@ -205,14 +216,11 @@ void place_chunk(const CellChunk& chunk, const ChunkPlace& place, size_t first_b
 
 // Arrays are counted for as long as some index holds them.
 void charge_arrays(const MemoryAccount& memory, PreparedDecals& decals) {
-    const std::string name = "static: prepared";
-    decals.bucket_entries = charged(decals.bucket_entries, memory, name);
-    decals.cells = charged(decals.cells.values(), memory, name);
-    decals.words = charged(decals.words.values(), memory, name);
-    decals.styles = charged(decals.styles, memory, name);
-    decals.kinds = charged(decals.kinds, memory, name);
-    decals.style_records = charged(decals.style_records, memory, name);
-    decals.slots = charged(decals.slots, memory, name);
+    decals.bucket_entries = charged(decals.bucket_entries, memory, account);
+    decals.styles = charged(decals.styles, memory, account);
+    decals.kinds = charged(decals.kinds, memory, account);
+    decals.style_records = charged(decals.style_records, memory, account);
+    decals.slots = charged(decals.slots, memory, account);
 }
 
 void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& charges,
@@ -232,9 +240,12 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
                            decals.style_records.size_bytes();
     if (end.first_texel > most_texels || end.first_cell > most_cells)
         refuse_size(bytes);
-    MemoryCharge charge(input.memory, "static: prepared", bytes);
+    MemoryCharge charge(input.memory, account, bytes);
     IndexArrays index;
     index.bucket_entries.resize(decals.grid.bucket_count());
+    // Where edits append, so that the first of them copies nothing.
+    index.cells.reserve(with_room(end.first_cell));
+    index.words.reserve(with_room(4 * end.first_texel));
     index.cells.resize(end.first_cell);
     index.words.resize(4 * end.first_texel);
     std::fill_n(index.words.begin(), 4, LIST_END);
@@ -245,10 +256,10 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
             charges[i] = MemoryCharge();
         }
     });
-    decals.bucket_entries = std::move(index.bucket_entries);
-    decals.cells = std::move(index.cells);
-    decals.words = std::move(index.words);
     charge = MemoryCharge();
+    decals.bucket_entries = std::move(index.bucket_entries);
+    decals.cells = GrownArray<uint32_t>(std::move(index.cells), input.memory, account);
+    decals.words = GrownArray<uint32_t>(std::move(index.words), input.memory, account);
     charge_arrays(input.memory, decals);
 }
 
@@ -259,8 +270,8 @@ std::unique_ptr<PreparedDecals> build_decals(const TechniqueInput& input, Progre
     decals->grid = BucketGrid::over(input.bounds, input.positions, choose_resolution(input));
     std::vector<DecalShape> shapes;
     collect_slots(input, *decals, shapes);
-    const std::vector<std::vector<double>> arcs = measure_arcs(input);
-    const OrderedFeatures features{&input, &decals->grid, decals->slots, shapes, arcs};
+    const std::vector<PartLengths> lengths = measure_lengths(input);
+    const OrderedFeatures features{&input, &decals->grid, decals->slots, shapes, lengths};
     std::vector<MemoryCharge> reference_charges, chunk_charges;
     std::vector<BucketReferences> references = make_all_references(features, reference_charges, progress);
     std::vector<CellChunk> chunks = make_chunks(features, references, chunk_charges, progress);
@@ -277,8 +288,8 @@ std::vector<uint32_t> touched_buckets(const TechniqueInput& input, const BucketG
     decals.grid = grid;
     std::vector<DecalShape> shapes;
     collect_slots(input, decals, shapes);
-    const std::vector<std::vector<double>> arcs(input.layers.size());
-    const OrderedFeatures features{&input, &decals.grid, decals.slots, shapes, arcs};
+    const std::vector<PartLengths> lengths(input.layers.size());
+    const OrderedFeatures features{&input, &decals.grid, decals.slots, shapes, lengths};
     std::vector<MemoryCharge> charges;
     Progress progress;
     std::vector<uint32_t> buckets;
@@ -295,8 +306,8 @@ LocalBuild build_buckets(const TechniqueInput& input, const BucketGrid& grid, Sp
     build.decals.grid = grid;
     std::vector<DecalShape> shapes;
     collect_slots(input, build.decals, shapes);
-    const std::vector<std::vector<double>> arcs = measure_arcs(input);
-    const OrderedFeatures features{&input, &build.decals.grid, build.decals.slots, shapes, arcs};
+    const std::vector<PartLengths> lengths = measure_lengths(input);
+    const OrderedFeatures features{&input, &build.decals.grid, build.decals.slots, shapes, lengths};
     std::vector<MemoryCharge> charges;
     Progress progress;
     const std::vector<BucketReferences> references = make_all_references(features, charges, progress);

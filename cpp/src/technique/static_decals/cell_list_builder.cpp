@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t no_slot = std::numeric_limits<uint32_t>::max();
 constexpr uint32_t texel_words = 4;
-constexpr size_t most_words_of_an_edge = 4;  // header, two points and a phase
+constexpr size_t most_words_of_an_edge = 5;  // header, two points and their pattern
 
 // Lists that are too long for their count need an end to be seen by.
 uint32_t texels_of(uint32_t words) {
@@ -38,30 +38,30 @@ void CellListBuilder::open_group(uint32_t cell, uint32_t slot, uint32_t flags) {
 }
 
 void CellListBuilder::add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, uint32_t to,
-                               const uint32_t* phase) {
-    begin_run(cell, slot, flags, from, phase);
+                               const PatternWords& pattern) {
+    begin_run(cell, slot, flags, from, pattern);
     if (from != to)
         add_word(cell, to);
     cells_[cell].last = to;
     ++edges_;
 }
 
-void CellListBuilder::add_dot(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase) {
-    begin_run(cell, slot, LINE, at, phase);
+void CellListBuilder::add_dot(uint32_t cell, uint32_t slot, uint32_t at, const PatternWords& pattern) {
+    begin_run(cell, slot, LINE, at, pattern);
     add_word(cell, at);
 }
 
 // Goes on from a point, or moves there.
 void CellListBuilder::begin_run(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from,
-                                const uint32_t* phase) {
+                                const PatternWords& pattern) {
     reserve_words();
     if (cells_[cell].slot != slot)
         open_group(cell, slot, flags);
     if (cells_[cell].last == from)
         return;
     add_word(cell, from | MOVE);
-    if (phase != nullptr)
-        add_word(cell, *phase);
+    for (size_t i = 0; i < pattern.count; ++i)
+        add_word(cell, pattern.words[i]);
     cells_[cell].last = from;
 }
 

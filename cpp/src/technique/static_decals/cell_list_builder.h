@@ -27,6 +27,14 @@ struct CellChunk {
     uint32_t longest_list = 0;  // words
 };
 
+// What follows a MOVE of a stroke with a pattern (style_records.h).
+struct PatternWords {
+    std::array<uint32_t, 2> words{};
+    size_t count = 0;
+
+    void add(uint32_t word) { words[count++] = word; }
+};
+
 class CellListBuilder {
 public:
     // Begins a bucket of 4^level empty cells.
@@ -38,17 +46,16 @@ public:
         return static_cast<uint32_t>(row << level_ | column);
     }
 
-    // `from` and `to`: points as words, without MOVE. `flags`: LINE, CLIP or none. `phase`: of a stroke with a
-    // pattern, how far along the period `from` is.
+    // `from` and `to`: points as words, without MOVE. `flags`: LINE, CLIP or none. `pattern`: as it is at `from`.
     void add_edge(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, uint32_t to,
-                  const uint32_t* phase = nullptr);
-    // Lets the next edge move to its beginning, and tell its phase, even where the run has come to.
+                  const PatternWords& pattern = {});
+    // Lets the next edge move to its beginning, and tell its pattern, even where the run has come to.
     void lift_pen(uint32_t cell, uint32_t slot) {
         if (cells_[cell].slot == slot)
             cells_[cell].last = no_point;
     }
     // A joined stroke's round end, or a dot.
-    void add_dot(uint32_t cell, uint32_t slot, uint32_t at, const uint32_t* phase);
+    void add_dot(uint32_t cell, uint32_t slot, uint32_t at, const PatternWords& pattern);
     void add_covers(uint32_t cell, uint32_t slot, uint32_t flags);
     bool has_group(uint32_t cell, uint32_t slot) const { return cells_[cell].slot == slot; }
     bool is_covered(uint32_t cell, uint32_t slot) const {
@@ -72,7 +79,7 @@ private:
         uint32_t word;
     };
 
-    void begin_run(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, const uint32_t* phase);
+    void begin_run(uint32_t cell, uint32_t slot, uint32_t flags, uint32_t from, const PatternWords& pattern);
     void open_group(uint32_t cell, uint32_t slot, uint32_t flags);
     // Room for the words of one call.
     void reserve_words();

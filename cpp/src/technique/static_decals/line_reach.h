@@ -6,27 +6,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/segment_interval.h"
 #include "technique/static_decals/bucket_grid.h"
 
 namespace decalgl {
-
-// The part of a segment inside a box, as parameters along it; empty when first > last.
-struct SegmentInterval {
-    double first = 0.0;
-    double last = 1.0;
-
-    void clip(double start, double step, double low, double high) {
-        if (step == 0.0) {
-            if (start < low || start > high)
-                last = -1.0;
-            return;
-        }
-        const double t0 = (low - start) / step;
-        const double t1 = (high - start) / step;
-        first = std::max(first, std::min(t0, t1));
-        last = std::min(last, std::max(t0, t1));
-    }
-};
 
 // Calls on_square(column, row) for the squares of `range` within `reach` quanta of the segment.
 template <typename OnSquare>

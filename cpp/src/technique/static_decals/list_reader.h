@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <vector>
 
 #include "technique/static_decals/style_reader.h"
@@ -72,7 +73,9 @@ private:
         style_ = StyleReader(decals_, slot_);
         if (style_.is(STYLE_THOENY))
             style_.multiply_width(slope_.thoeny_width());
-        has_incoming_ = awaits_phase_ = false;
+        has_incoming_ = false;
+        awaited_ = 0;
+        slant_ = 1.0;
         if ((header & COVERS) != 0)
             std::fill(shares_.begin(), shares_.end(), Real(0));
         const bool is_plain_stroke = is_line_ && (header & COVERS) == 0 && !style_.is(STYLE_JOINED);
@@ -95,10 +98,8 @@ private:
     }
 
     void read_point(uint32_t word) {
-        if (awaits_phase_) {
-            has_incoming_ = has_incoming_ && (word & PHASE_LIFTS) == 0;
-            periods_ = static_cast<double>(word & (PHASE_ONE - 1)) / PHASE_ONE;
-            awaits_phase_ = false;
+        if (awaited_ > 0) {
+            read_pattern(word);
             return;
         }
         const Vector2 to{static_cast<double>(word & COORDINATE_MASK),
@@ -110,12 +111,25 @@ private:
         } else if (!style_.is(STYLE_JOINED)) {
             add_capsule(measured(moves ? to : from_), measured(to));
         } else if (moves) {
-            awaits_phase_ = style_.is(STYLE_PATTERN);
-            has_incoming_ = has_incoming_ && awaits_phase_ && to.x == from_.x && to.y == from_.y;
+            const bool is_patterned = style_.is(STYLE_PATTERN);
+            awaited_ = is_patterned ? (is_tangent_ ? 2 : 1) : 0;
+            has_incoming_ = has_incoming_ && is_patterned && to.x == from_.x && to.y == from_.y;
         } else {
             add_joined_edge(to);
         }
         from_ = to;
+    }
+
+    // A slant, of strokes that follow the ground, and then a phase.
+    void read_pattern(uint32_t word) {
+        if (awaited_-- == 2) {
+            float slant = 1.0F;
+            std::memcpy(&slant, &word, sizeof slant);
+            slant_ = slant;
+            return;
+        }
+        has_incoming_ = has_incoming_ && (word & PHASE_LIFTS) == 0;
+        periods_ = static_cast<double>(word & (PHASE_ONE - 1)) / PHASE_ONE;
     }
 
     Vector2 at(size_t point) const { return {double{at_x_[point]}, double{at_y_[point]}}; }
@@ -161,8 +175,7 @@ private:
         const Vector2 on_map = to - from_, along = measured(on_map), from = measured(from_);
         const double length = std::sqrt(dot(along, along)), width = style_.width_at(periods_);
         const Vector2 direction = length > 0.0 ? Vector2{along.x / length, along.y / length} : Vector2{};
-        // Patterns follow the length on the map.
-        const double periods = std::sqrt(dot(on_map, on_map)) * style_.periods_per_unit();
+        const double periods = slant_ * std::sqrt(dot(on_map, on_map)) * style_.periods_per_unit();
         for (size_t i = 0; i < shares_.size(); ++i) {
             const Vector2 past = at(i) - from;
             if (length == 0.0) {
@@ -237,10 +250,12 @@ private:
     std::vector<char> open_;  // not cut off by the clip before
     uint32_t slot_ = 0;
     bool is_line_ = false, is_clip_ = false, follows_clip_ = false;
-    bool has_incoming_ = false, awaits_phase_ = false;
+    bool has_incoming_ = false;
+    int awaited_ = 0;  // words of the pattern, after a MOVE
     StyleReader style_;
     Vector2 from_{}, incoming_{};
     double periods_ = 0.0;
+    double slant_ = 1.0;  // of lengths along the pattern
 };
 
 }  // namespace decalgl

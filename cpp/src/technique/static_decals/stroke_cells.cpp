@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "technique/static_decals/line_reach.h"
 
@@ -38,14 +39,16 @@ uint32_t word_of(uint32_t x, uint32_t y) {
     return x | y << COORDINATE_BITS;
 }
 
-double length_of(LatticePoint a, LatticePoint b) {
-    return std::hypot(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y));
-}
-
 uint32_t phase_of(double periods, bool begins) {
     const double fraction = periods - std::floor(periods);
     return std::min(static_cast<uint32_t>(fraction * PHASE_ONE), uint32_t{PHASE_ONE - 1}) |
            (begins ? PHASE_LIFTS : 0U);
+}
+
+uint32_t bits_of(float value) {
+    uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
 }
 
 // The end that a square cap moves outwards.
@@ -83,14 +86,15 @@ void StrokeCells::mark_covered_cells(Span<const LatticePoint> points) {
     }
 }
 
-void StrokeCells::add_edges(Span<const LatticePoint> points, const StrokeEnds& ends) {
+void StrokeCells::add_edges(Span<const LatticePoint> points, const StrokeEnds& ends,
+                            Span<const float> slants) {
     if (shape_->is_joined) {
-        add_joined(points, ends);
+        add_joined(points, ends, slants);
         return;
     }
     const auto add = [&](LatticePoint a, LatticePoint b) {
         for_each_square_near(a, b, reach_, cells_, [&](int64_t column, int64_t row) {
-            add_edge({a, b, 0.0, false}, column, row);
+            add_edge({a, b, 0.0}, column, row);
         });
     };
     if (points.size() == 1)
@@ -100,8 +104,8 @@ void StrokeCells::add_edges(Span<const LatticePoint> points, const StrokeEnds& e
 }
 
 template <typename OnEdge, typename OnDot>
-void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeEnds& ends, OnEdge on_edge,
-                                  OnDot on_dot) const {
+void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeEnds& ends,
+                                  Span<const float> slants, OnEdge on_edge, OnDot on_dot) const {
     const double radius = shape_->half_width;
     const bool square = shape_->cap == Cap::square, round = shape_->cap == Cap::round;
     const size_t last = points.size() - 1;
@@ -117,8 +121,10 @@ void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeE
         on_dot(points[0], periods, true);
     for (size_t i = 1; i <= last; ++i) {
         const bool begins = i == 1 && ends.begins, finishes = i == last && ends.ends;
-        Edge edge{points[i - 1], points[i], periods, i == 1 && !ends.begins, begins};
-        periods += length_of(edge.a, edge.b) * shape_->periods_per_quantum;
+        const float slant = slants.empty() ? 1.0F : std::abs(slants[i]);
+        const bool bends = !slants.empty() && slants[i - 1] < 0.0F;
+        Edge edge{points[i - 1], points[i], periods, slant, i == 1 && !ends.begins, begins, begins || bends};
+        periods += periods_along(edge, length_of(edge.a, edge.b));
         double reach = radius;
         if (!begins)
             reach = std::max(reach, shape_->reach_near(i == 1 ? ends.before : points[i - 2], edge.a, edge.b));
@@ -127,7 +133,7 @@ void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeE
                 std::max(reach, shape_->reach_near(edge.a, edge.b, i == last ? ends.after : points[i + 1]));
         if (begins && square) {
             edge.a = lengthened(edge.a, edge.b, radius);
-            edge.periods -= radius * shape_->periods_per_quantum;
+            edge.periods -= periods_along(edge, radius);
         }
         if (finishes && square)
             edge.b = lengthened(edge.b, points[i - 1], radius);
@@ -137,9 +143,10 @@ void StrokeCells::for_each_joined(Span<const LatticePoint> points, const StrokeE
         on_dot(points[last], periods, false);
 }
 
-void StrokeCells::add_joined(Span<const LatticePoint> points, const StrokeEnds& ends) {
+void StrokeCells::add_joined(Span<const LatticePoint> points, const StrokeEnds& ends,
+                             Span<const float> slants) {
     for_each_joined(
-        points, ends,
+        points, ends, slants,
         [&](const Edge& edge, double reach) {
             for_each_square_near(edge.a, edge.b, static_cast<int64_t>(std::ceil(reach)), cells_,
                                  [&](int64_t column, int64_t row) { add_edge(edge, column, row); });
@@ -159,7 +166,7 @@ void StrokeCells::mark_touched_cells(Span<const LatticePoint> points, const Stro
     };
     if (shape_->is_joined) {
         for_each_joined(
-            points, ends, [&](const Edge& edge, double reach) { mark(edge.a, edge.b, reach); },
+            points, ends, {}, [&](const Edge& edge, double reach) { mark(edge.a, edge.b, reach); },
             [&](LatticePoint at, double, bool) { mark(at, at, shape_->half_width); });
         return;
     }
@@ -179,10 +186,9 @@ void StrokeCells::add_dot(LatticePoint at, double periods, bool begins, uint32_t
         return;
     if (begins)
         lists_->lift_pen(cell, slot_);
-    const uint32_t phase = phase_of(periods, begins);
     lists_->add_dot(cell, slot_,
                     word_of(static_cast<uint32_t>(std::lrint(x)), static_cast<uint32_t>(std::lrint(y))),
-                    shape_->periods_per_quantum > 0.0 ? &phase : nullptr);
+                    pattern_words(periods, begins, 1.0F));
 }
 
 void StrokeCells::add_edge(const Edge& edge, int64_t column, int64_t row) {
@@ -191,17 +197,16 @@ void StrokeCells::add_edge(const Edge& edge, int64_t column, int64_t row) {
     if (!shows_in(cell) || (covers_cells_ && lists_->is_covered(cell, slot_)))
         return;
     const bool patterned = shape_->periods_per_quantum > 0.0;
-    if (edge.begins || (patterned && edge.restarts))
+    if (edge.begins || (patterned && edge.restarts) || shape_->follows_ground)
         lists_->lift_pen(cell, slot_);
     const int64_t bias = cell_bias(lists_->level());
     const int64_t left = cells_.border(column), bottom = cells_.border(row);
     const int64_t x0 = a.x - left + bias, y0 = a.y - bottom + bias, x1 = b.x - left + bias,
                   y1 = b.y - bottom + bias;
     if (shape_->scale == 0 && ((x0 | y0 | x1 | y1) & ~int64_t{COORDINATE_MASK}) == 0) {
-        const uint32_t phase = patterned ? phase_of(edge.periods, edge.begins) : 0;
         lists_->add_edge(cell, slot_, LINE, word_of(static_cast<uint32_t>(x0), static_cast<uint32_t>(y0)),
                          word_of(static_cast<uint32_t>(x1), static_cast<uint32_t>(y1)),
-                         patterned ? &phase : nullptr);
+                         pattern_words(edge.periods, edge.plain, edge.slant));
         return;
     }
     const double unit = std::ldexp(1.0, -shape_->scale), origin = static_cast<double>(bias);
@@ -222,12 +227,18 @@ void StrokeCells::add_edge(const Edge& edge, int64_t column, int64_t row) {
         };
         return word_of(along(ax, bx), along(ay, by));
     };
-    const uint32_t phase =
-        patterned
-            ? phase_of(edge.periods + kept.first * length_of(a, b) * shape_->periods_per_quantum, edge.begins)
-            : 0;
+    const double periods = edge.periods + periods_along(edge, kept.first * length_of(a, b));
     lists_->add_edge(cell, slot_, LINE, word_at(kept.first), word_at(kept.last),
-                     patterned ? &phase : nullptr);
+                     pattern_words(periods, edge.plain, edge.slant));
+}
+
+PatternWords StrokeCells::pattern_words(double periods, bool begins, float slant) const {
+    PatternWords words;
+    if (shape_->follows_ground)
+        words.add(bits_of(slant));
+    if (shape_->periods_per_quantum > 0.0)
+        words.add(phase_of(periods, begins));
+    return words;
 }
 
 }  // namespace decalgl

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "technique/ground_lengths.h"
+
 namespace decalgl {
 namespace {
 
@@ -164,6 +166,7 @@ DecalShape StyleTable::shape_of(const Decal& slot) const {
     shape.is_joined = is_joined(style);
     shape.miter_turn = miter_turn(style);
     shape.is_tangent = style.slope_correction == SlopeCorrection::tangent;
+    shape.follows_ground = follows_ground(style);
     if (style.pattern.period > 0.0) {
         shape.periods_per_quantum = grid_->quantum / style.pattern.period;
         shape.first_period = style.pattern.offset / style.pattern.period;

@@ -35,6 +35,7 @@ struct DecalShape {
     Cap cap = Cap::round;
     double miter_turn = 1.0;           // cosine of the largest turn that is mitred
     bool is_tangent = false;           // measured on slopes, where turns are others
+    bool follows_ground = false;       // the pattern is measured along the ground
     double periods_per_quantum = 0.0;  // 0: no pattern
     double first_period = 0.0;         // where a line begins in its pattern
 
