@@ -85,6 +85,7 @@ def _choices(results: Results) -> str:
     assert table is not None
     scenes = dict.fromkeys(row["scene"] for row in drawn)
     among = f"Of what draws all of the scenes {', '.join(scenes)}; dynamic lines, those with lines."
+    among += f" {choices.PAINTED}"
     return f"{_lines(table)}\n\n{among} {_origin(results, 'error_over_time')}"
 
 

@@ -30,8 +30,8 @@ PATIENCE = 0.3  # seconds: frames that take longer need no round before those th
 ABOUT = (
     "Each point is a technique with a setting. Time is that of a whole frame, and of what it adds to"
     " terrain and composing, both divided by the floor, a pass that reads depth and writes a colour for every"
-    " pixel. The error is the root mean square of the"
-    " difference to the reference, of 1, over the pixels of a crop that"
+    " pixel; the first frame of a clipmap paints tiles, which its spread tells. The error is the root mean square of"
+    " the difference to the reference, of 1, over the pixels of a crop that"
     " a border passes (an edge's), over all pixels of the crop (the image's), and of the coverage alone. Dynamic lines"
     " are as wide as on the screen and are compared with a reference that draws them so; techniques that draw only"
     " lines leave polygons to static, and are left out where there are no lines."
