@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -21,27 +20,10 @@
 
 namespace decalgl {
 
-// For how many values there is room beside so many. What is not used of it is address space alone.
-constexpr std::size_t with_room(std::size_t size) {
-    return size + size / 4 + 4096;
-}
-
 template <typename T>
 class GrowingArray {
 public:
     GrowingArray() = default;
-
-    // Takes values over, charged to the account as `name`; what they may grow to without moving is the room.
-    static GrowingArray adopted(LargeArray<T> values, const MemoryAccount& memory, const std::string& name) {
-        GrowingArray result;
-        result.size_ = values.size();
-        result.storage_ = std::make_shared<Storage>();
-        result.storage_->charge = MemoryCharge(memory, name, values.size() * sizeof(T));
-        result.storage_->used = values.size();
-        result.storage_->room = std::move(values);
-        result.storage_->room.resize(result.storage_->room.capacity());
-        return result;
-    }
 
     SharedArray<T> values() const { return {Span<const T>(storage_->room.data(), size_), storage_}; }
     // Where the values lie that its first ones were copied from.
@@ -58,8 +40,6 @@ public:
                           storage_->used.compare_exchange_strong(used, result.size_);
         if (fits) {
             result.storage_ = storage_;
-            MemoryCharge& charge = result.storage_->charge;
-            charge.resize(std::max<std::uint64_t>(charge.bytes(), result.size_ * sizeof(T)));
         } else {
             result.storage_ = copied(before, result.size_, memory, name);
             result.storage_->origin = before.data();
@@ -91,7 +71,7 @@ private:
     static std::shared_ptr<Storage> copied(Span<const T> before, std::size_t size,
                                            const MemoryAccount& memory, const std::string& name) {
         auto storage = std::make_shared<Storage>();
-        const std::size_t room = with_room(size);
+        const std::size_t room = size + size / 4 + 4096;
         storage->charge = MemoryCharge(memory, name, room * sizeof(T));
         storage->room.resize(room);
         storage->used = size;
@@ -113,11 +93,6 @@ public:
     GrownArray(SharedArray<T> values) : values_(std::move(values)) {}
     template <typename Allocator>
     GrownArray(std::vector<T, Allocator> values) : values_(std::move(values)) {}
-    // With the room that the values have.
-    GrownArray(LargeArray<T> values, const MemoryAccount& memory, const std::string& name) {
-        growing_ = GrowingArray<T>::adopted(std::move(values), memory, name);
-        values_ = growing_.values();
-    }
 
     void append(Span<const T> more, const MemoryAccount& memory, const std::string& name) {
         if (more.empty())
