@@ -53,7 +53,7 @@ test: build  ## Run the C++ and Python tests
 bench: build  ## Measure speed and memory on real data
 	$(BIN)/decalgl bench
 
-report: build  ## Draw a report of error against run time into build/report (SIZE=full takes two hours)
+report: build  ## Draw a report of error against run time into build/report (SIZE=full takes two to three hours)
 	test $(SIZE) = quick || $(BIN)/python -m pip install --quiet --constraint packages/python.txt pyflwdir
 	$(BIN)/decalgl report --out build/report --size $(SIZE)
 
