@@ -109,7 +109,7 @@ def _volume() -> Iterator[Setting]:
     volume = dg.Volume()
     yield Setting("volume", "none", "none", polygons=volume, lines=volume, quick=True)
     yield Setting("volume", "fxaa", "fxaa", polygons=volume, lines=volume)
-    for samples in (4, 8):
+    for samples in (2, 4):
         options = {"samples": samples}
         yield Setting("volume", f"ssaa {samples}", "ssaa", polygons=volume, lines=volume, renderer=options)
 
