@@ -187,6 +187,9 @@ TEST_CASE("an edit leaves other buckets as they are and shares their lists", "[s
         changed += before->bucket_entries[bucket] != after->bucket_entries[bucket] ? 1 : 0;
     CHECK(changed > 0);
     CHECK(changed < 40);
+    // The first edit copies no lists either.
+    CHECK(after->words.data() == before->words.data());
+    CHECK(after->cells.data() == before->cells.data());
     const auto again = as_decals(after->edited(edit_of(1, {{300, 500, 320, 520}}, {}, {}), MemoryAccount()));
     CHECK(again->words.data() == after->words.data());
     CHECK(again->words.size() > after->words.size());
@@ -213,6 +216,18 @@ TEST_CASE("edits are counted, and one beyond the budget changes nothing", "[stat
     auto edited = decals->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {}), memory);
     CHECK(memory.total() > used);
     edited.reset();
+    CHECK(memory.total() == used);
+    // Nor is the place of one that is gone taken twice.
+    edited = decals->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {}), memory);
+    CHECK(as_decals(edited)->words.data() != decals->words.data());
+    // Versions that continue one storage count once, whichever goes first.
+    auto again = edited->edited(edit_of(1, {{0, 0, 900, 900}}, {}, {}), memory);
+    CHECK(as_decals(again)->words.data() == as_decals(edited)->words.data());
+    const uint64_t both = memory.total();
+    edited.reset();
+    CHECK(memory.total() < both);
+    CHECK(again->query({450.0, 450.0}).front() == FeatureReference{1, 61});
+    again.reset();
     CHECK(memory.total() == used);
     decals.reset();
     CHECK(memory.total() == 0);

@@ -9,9 +9,10 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 
 #include "decalgl/core/large_array.h"
@@ -20,31 +21,45 @@
 
 namespace decalgl {
 
+// For how many values there is room beside so many. What is not used of it is address space alone.
+constexpr std::size_t with_room(std::size_t size) {
+    return size + size / 4 + 4096;
+}
+
 template <typename T>
 class GrowingArray {
 public:
     GrowingArray() = default;
 
-    SharedArray<T> values() const { return {Span<const T>(storage_->room.data(), size_), storage_}; }
+    // Takes values over, charged to the account as `name`; what they may grow to without moving is the room.
+    static GrowingArray adopted(LargeArray<T> values, const MemoryAccount& memory, const std::string& name) {
+        const std::size_t size = values.size();
+        auto storage = std::make_shared<Storage>();
+        storage->charge = MemoryCharge(memory, name, 0);
+        storage->room = std::move(values);
+        storage->room.resize(storage->room.capacity());
+        return GrowingArray(std::make_shared<Version>(std::move(storage), size));
+    }
+
+    SharedArray<T> values() const {
+        return {Span<const T>(version_->storage->room.data(), version_->size), version_};
+    }
     // Where the values lie that its first ones were copied from.
-    const T* origin() const { return storage_ ? storage_->origin : nullptr; }
+    const T* origin() const { return version_ ? version_->storage->origin : nullptr; }
 
     // `before` with `more` at its end, charged to the account as `name` where it is copied. `before` is values() of this
     // one, or this one is empty.
     GrowingArray appended(const SharedArray<T>& before, Span<const T> more, const MemoryAccount& memory,
                           const std::string& name) const {
+        const std::size_t size = before.size() + more.size();
         GrowingArray result;
-        result.size_ = before.size() + more.size();
-        std::size_t used = before.size();
-        const bool fits = storage_ && result.size_ <= storage_->room.size() &&
-                          storage_->used.compare_exchange_strong(used, result.size_);
-        if (fits) {
-            result.storage_ = storage_;
+        if (version_ && version_->storage->claim(before.size(), size)) {
+            result.version_ = std::make_shared<Version>(version_->storage, size);
         } else {
-            result.storage_ = copied(before, result.size_, memory, name);
-            result.storage_->origin = before.data();
+            result = copied(before, size, memory, name);
+            result.version_->storage->origin = before.data();
         }
-        std::copy(more.begin(), more.end(), result.storage_->room.data() + before.size());
+        std::copy(more.begin(), more.end(), result.version_->storage->room.data() + before.size());
         return result;
     }
 
@@ -52,35 +67,65 @@ public:
     template <typename Change>
     static GrowingArray changed(Span<const T> before, const MemoryAccount& memory, const std::string& name,
                                 Change change) {
-        GrowingArray result;
-        result.size_ = before.size();
-        result.storage_ = copied(before, result.size_, memory, name);
-        change(result.storage_->room.data());
+        GrowingArray result = copied(before, before.size(), memory, name);
+        change(result.version_->storage->room.data());
         return result;
     }
 
 private:
     struct Storage {
-        MemoryCharge charge;
+        std::mutex mutex;
+        MemoryCharge charge;               // of the longest version that lives
+        std::multiset<std::size_t> sizes;  // of those that live
+        std::size_t used = 0;              // by all that ever lived
         LargeArray<T> room;
-        std::atomic<std::size_t> used{0};
         const T* origin = nullptr;
+
+        // Whether what ends at `from` may go on to `size` in place: only the first to ask.
+        bool claim(std::size_t from, std::size_t size) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            if (used != from || size > room.size())
+                return false;
+            used = size;
+            return true;
+        }
     };
 
+    // Counted for as long as it lives.
+    struct Version {
+        Version(std::shared_ptr<Storage> held, std::size_t values) : storage(std::move(held)), size(values) {
+            const std::lock_guard<std::mutex> lock(storage->mutex);
+            storage->charge.resize(std::max<std::uint64_t>(storage->charge.bytes(), size * sizeof(T)));
+            storage->sizes.insert(size);
+            storage->used = std::max(storage->used, size);
+        }
+        Version(const Version&) = delete;
+        Version& operator=(const Version&) = delete;
+        ~Version() {
+            const std::lock_guard<std::mutex> lock(storage->mutex);
+            storage->sizes.erase(storage->sizes.find(size));
+            if (!storage->sizes.empty())
+                storage->charge.resize(*storage->sizes.rbegin() * sizeof(T));
+        }
+
+        const std::shared_ptr<Storage> storage;
+        const std::size_t size;
+    };
+
+    explicit GrowingArray(std::shared_ptr<const Version> version) : version_(std::move(version)) {}
+
     // With room for more than `size` values.
-    static std::shared_ptr<Storage> copied(Span<const T> before, std::size_t size,
-                                           const MemoryAccount& memory, const std::string& name) {
-        auto storage = std::make_shared<Storage>();
-        const std::size_t room = size + size / 4 + 4096;
-        storage->charge = MemoryCharge(memory, name, room * sizeof(T));
-        storage->room.resize(room);
-        storage->used = size;
-        std::copy(before.begin(), before.end(), storage->room.begin());
-        return storage;
+    static GrowingArray copied(Span<const T> before, std::size_t size, const MemoryAccount& memory,
+                               const std::string& name) {
+        LargeArray<T> values;
+        values.reserve(with_room(size));
+        values.resize(size);
+        GrowingArray result = adopted(std::move(values), memory, name);
+        std::copy(before.begin(), before.end(), result.version_->storage->room.begin());
+        return result;
     }
 
-    std::shared_ptr<Storage> storage_;
-    std::size_t size_ = 0;
+    std::shared_ptr<const Version> version_;
 };
 
 // Shared values that may be continued: copies go on with what they had.
@@ -93,6 +138,11 @@ public:
     GrownArray(SharedArray<T> values) : values_(std::move(values)) {}
     template <typename Allocator>
     GrownArray(std::vector<T, Allocator> values) : values_(std::move(values)) {}
+    // With the room that the values have.
+    GrownArray(LargeArray<T> values, const MemoryAccount& memory, const std::string& name) {
+        growing_ = GrowingArray<T>::adopted(std::move(values), memory, name);
+        values_ = growing_.values();
+    }
 
     void append(Span<const T> more, const MemoryAccount& memory, const std::string& name) {
         if (more.empty())

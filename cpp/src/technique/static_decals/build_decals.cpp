@@ -243,6 +243,9 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
     MemoryCharge charge(input.memory, account, bytes);
     IndexArrays index;
     index.bucket_entries.resize(decals.grid.bucket_count());
+    // Where edits append, so that the first of them copies nothing.
+    index.cells.reserve(with_room(end.first_cell));
+    index.words.reserve(with_room(4 * end.first_texel));
     index.cells.resize(end.first_cell);
     index.words.resize(4 * end.first_texel);
     std::fill_n(index.words.begin(), 4, LIST_END);
@@ -255,8 +258,8 @@ void join_chunks(std::vector<CellChunk>& chunks, std::vector<MemoryCharge>& char
     });
     charge = MemoryCharge();
     decals.bucket_entries = std::move(index.bucket_entries);
-    decals.cells = charged(SharedArray<uint32_t>(std::move(index.cells)), input.memory, account);
-    decals.words = charged(SharedArray<uint32_t>(std::move(index.words)), input.memory, account);
+    decals.cells = GrownArray<uint32_t>(std::move(index.cells), input.memory, account);
+    decals.words = GrownArray<uint32_t>(std::move(index.words), input.memory, account);
     charge_arrays(input.memory, decals);
 }
 
