@@ -67,7 +67,8 @@ class Maps:
     """The scenes that factors are measured on: slices of height and isolines, whole or in parts."""
 
     def __init__(self, context: Context) -> None:
-        self.size = context.chosen((32, 18), (192, 108), context.picture)
+        # Large enough that drawing static lines alone takes several of the milliseconds from which on signs count.
+        self.size = context.chosen((32, 18), (192, 108), (640, 360))
         self._map = build("floods", context.step)
 
     @functools.cached_property
