@@ -223,6 +223,21 @@ def dashes_up_slopes() -> View:
 
 
 @named
+def strokes_along_rows() -> View:
+    """Level strokes from above, along rows of samples: creases that no place on the map shows."""
+    scene = steep_ground()
+    ways = [[np.array([(-85.0, y), (85.0, y)])] for y in np.linspace(-60.0, 60.0, 12)]
+    corrections: tuple[Literal["tangent", "none", "thoeny"], ...] = ("tangent", "none", "thoeny")
+    styles = [
+        StrokeStyle(corner, "butt", slope_correction=correction, pattern=dashes(9.0, (0.0, 5.0)))
+        for corner, correction in zip(CORNERS, corrections, strict=True)
+    ]
+    under = stroke(12, 6.0, (*GREY, 1.0), StrokeStyle(slope_correction="tangent"))
+    styled(scene, "lines", ways, stroke=stroke(12, 4.0, tints(12, 44, 0.8), styles), casing=under)
+    return above(scene)
+
+
+@named
 def thoeny_slopes() -> View:
     """Strokes narrowed on steep ground as it is seen from the side."""
     return on_slopes("thoeny")

@@ -12,6 +12,8 @@
 //
 // OVERLAY  with layers
 // HOLES    the terrain has missing samples
+// SLOPES   strokes are as wide as the ground is steep: then a border bends at every crease, also where the plane goes on as
+//          nearly as from above
 #include "shared/ray.glsl"
 #include "terrain/mesh.glsl"
 
@@ -24,6 +26,9 @@ const float farthest = 1.0;  // footprints
 // The longer side of a pixel, in cells of the terrain, from which on facets are small.
 const float smallest_facets = 0.8;
 const float farthest_among_small = 0.08;  // footprints
+
+// Between the gradients of neighbours at a border, from which on widths that follow slopes bend.
+const float most_between_slopes = 1e-3;
 
 const ivec2 neighbours[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
@@ -107,6 +112,9 @@ void main() {
         bool at_sky = isinf(beside.z) != sky;
         is_silhouette = is_silhouette || at_sky || (!sky && !(apart <= farthest));
         marked = marked || at_sky || (!sky && !(apart <= most));
+#ifdef SLOPES
+        marked = marked || (at_border && length(beside.xy - surface.xy) > most_between_slopes);
+#endif
     }
     mark = is_silhouette ? 1.0 : marked ? 0.5 : 0.0;
 }

@@ -204,13 +204,10 @@ void Pipeline::show_mean(int samples) {
     draw_full_screen();
 }
 
-Facets Pipeline::facets() {
-    Facets facets = Facets::of_rays;
-    for_each_shown([&](size_t, const Technique& technique) {
-        if (technique.follows_slopes())
-            facets = Facets::of_samples;
-    });
-    return facets;
+SlopeUse Pipeline::slope_use() {
+    SlopeUse most = SlopeUse::none;
+    for_each_shown([&](size_t, const Technique& technique) { most = std::max(most, technique.slope_use()); });
+    return most;
 }
 
 void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image) {
@@ -219,7 +216,7 @@ void Pipeline::redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& imag
         const gl::PassTimer timer(&timings_, "silhouettes");
         pixels =
             silhouettes_->find(targets_->seen.gbuffer, shows_layers() ? &targets_->seen.overlay : nullptr,
-                               facets(), piece.drawn, piece.shown, *terrain_, programs_);
+                               slope_use(), piece.drawn, piece.shown, *terrain_, programs_);
     }
     silhouette_pixels_ += pixels.size();
     for (size_t first = 0; first < pixels.size(); first += Silhouettes::batch_size) {
@@ -267,7 +264,7 @@ void Pipeline::follow_few_rays(const Piece& piece) {
 void Pipeline::follow_all_rays(const Piece& piece) {
     const gl::PassTimer timer(&timings_, "gathered");
     silhouettes_->seen().gbuffer.framebuffer.bind();
-    if (facets() == Facets::of_samples) {
+    if (slope_use() == SlopeUse::strokes) {
         follow_rays(piece, {});
         return;
     }
@@ -285,10 +282,10 @@ void Pipeline::follow_all_rays(const Piece& piece) {
 // The colours of some pixels, each the mean of its samples.
 std::vector<uint8_t> Pipeline::draw_gathered(const Piece& piece, Span<const uint32_t> pixels) {
     silhouettes_->gather(pixels);
-    if (facets() == Facets::of_rays)
+    if (slope_use() != SlopeUse::strokes)
         follow_few_rays(piece);
     const LowerRows used(silhouettes_->sample_columns(), silhouettes_->sample_rows());
-    if (facets() == Facets::of_rays) {
+    if (slope_use() != SlopeUse::strokes) {
         const gl::PassTimer timer(&timings_, "spread");
         silhouettes_->spread(programs_);
     }

@@ -114,7 +114,7 @@ private:
     void add_sample();
     void show_mean(int samples);
     void redraw_silhouettes(const Piece& piece, std::vector<uint8_t>& image);
-    Facets facets();
+    SlopeUse slope_use();  // the most of all layers shown
     void follow_rays(const Piece& piece, const gl::Flags& flags);
     void follow_few_rays(const Piece& piece);
     void follow_all_rays(const Piece& piece);

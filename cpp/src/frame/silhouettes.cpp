@@ -14,8 +14,8 @@ constexpr int columns = 256;  // pixels in a row of a batch
 constexpr int rows = static_cast<int>(Silhouettes::batch_size) / columns;
 constexpr GLuint pixels_unit = 7;
 
-// Footprints that a neighbour may be seen off a pixel's plane at a border. What follows from slopes goes on over the plane, and
-// is off by more.
+// Footprints that a neighbour may be seen off a pixel's plane at a border. Strokes found on the plane go on over it, and are
+// off by more.
 constexpr float farthest_at_borders = 0.15F;
 constexpr float farthest_on_slopes = 0.005F;
 
@@ -62,12 +62,14 @@ Silhouettes::Silhouettes(int width, int height, bool has_overlay, const MemoryAc
       marks_(gl::Texture2D::create(memory, "silhouettes: marks", GL_R8, width, height)),
       marks_framebuffer_(gl::Framebuffer::create("marks", {{GL_COLOR_ATTACHMENT0, &marks_}})) {}
 
-std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
-                                        const Rectangle& drawn, const Rectangle& shown,
+std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Texture2D* overlay,
+                                        SlopeUse slope_use, const Rectangle& drawn, const Rectangle& shown,
                                         const TerrainMesh& terrain, gl::ProgramLibrary& programs) {
     gl::Flags flags;
     if (overlay != nullptr)
         flags.insert("OVERLAY");
+    if (overlay != nullptr && slope_use == SlopeUse::widths)
+        flags.insert("SLOPES");
     if (terrain.has_holes())
         flags.insert("HOLES");
     gl::Program& program = programs.get("silhouettes", flags);
@@ -81,7 +83,7 @@ std::vector<uint32_t> Silhouettes::find(const GBuffer& centres, const gl::Textur
         program.set("tile_levels", 2);
         terrain.levels().bind(2);
         program.set("farthest_at_borders",
-                    facets == Facets::of_samples ? farthest_on_slopes : farthest_at_borders);
+                    slope_use == SlopeUse::strokes ? farthest_on_slopes : farthest_at_borders);
     }
     if (terrain.has_holes()) {
         program.set("heights", 3);

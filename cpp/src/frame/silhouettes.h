@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "decalgl/frame/picture_request.h"
+#include "decalgl/technique/technique.h"
 #include "frame/targets.h"
 #include "frame/terrain_mesh.h"
 #include "gl/buffer.h"
@@ -22,10 +23,6 @@
 
 namespace decalgl {
 
-// Which facets of the ground a pixel's samples lie on: those that sixteen rays meet, each for the samples near it, or each
-// sample on its own.
-enum class Facets { of_rays, of_samples };
-
 class Silhouettes {
 public:
     // For rectangles of at most this size.
@@ -33,7 +30,7 @@ public:
 
     // The pixels of `shown` that need it, x | y << 16 counted from the rectangle drawn. The uniform block is
     // that of the pixels' centres. overlay: none where creases are left alone.
-    std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, Facets facets,
+    std::vector<uint32_t> find(const GBuffer& centres, const gl::Texture2D* overlay, SlopeUse slope_use,
                                const Rectangle& drawn, const Rectangle& shown, const TerrainMesh& terrain,
                                gl::ProgramLibrary& programs);
 

@@ -185,6 +185,11 @@ struct UpdateReport {
     std::vector<std::pair<std::string, double>> counts;  // further ones, for frame.stats
 };
 
+// What of `Technique::draw` follows from the slope of the ground, and not from the place on the map alone: nothing, how
+// wide strokes are, or which strokes a pixel meets. Samples of a pixel with a bend then see the facets that they lie on, and
+// not those of samples beside them.
+enum class SlopeUse { none, widths, strokes };
+
 class Technique {
 public:
     virtual ~Technique() = default;
@@ -210,9 +215,7 @@ public:
     virtual bool needs_depth(const View&) const { return false; }
     // Whether `draw` and `draw_ids` need a depth attachment with a stencil.
     virtual bool needs_stencil(const View&) const { return false; }
-    // Whether what `draw` writes follows from the slope of the ground as well as from the place on the map. Then samples of
-    // a pixel with a bend see the facets that they lie on, and not those of samples beside them.
-    virtual bool follows_slopes() const { return false; }
+    virtual SlopeUse slope_use() const { return SlopeUse::none; }
     // Writes premultiplied colour and coverage into the bound framebuffer, a rectangle of the picture: all of it,
     // or over what view.has_below says is there.
     virtual void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) = 0;

@@ -160,6 +160,11 @@ UpdateReport DistanceField::update(const View&) {
     return report;
 }
 
+SlopeUse DistanceField::slope_use() const {
+    const auto has_slopes = [](const Side& side) { return side.prepared && side.prepared->table.slopes; };
+    return has_slopes(outside_) || has_slopes(inside_) ? SlopeUse::widths : SlopeUse::none;
+}
+
 gl::Flags DistanceField::flags_of(const Side& side) const {
     const DistanceFieldOptions& options = *side.prepared->options;
     const CategoryTable& table = side.prepared->table;

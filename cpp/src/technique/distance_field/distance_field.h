@@ -30,6 +30,7 @@ public:
     void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                 const TerrainView& terrain, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
+    SlopeUse slope_use() const override;
     bool keeps_update() const override { return holds_fields(outside_); }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;

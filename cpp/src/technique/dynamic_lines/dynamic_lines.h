@@ -25,7 +25,7 @@ public:
                 const TerrainView& terrain, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
     bool keeps_update() const override { return keeps_update_; }
-    bool follows_slopes() const override { return true; }
+    SlopeUse slope_use() const override { return SlopeUse::strokes; }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
 

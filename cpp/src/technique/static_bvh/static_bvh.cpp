@@ -360,6 +360,18 @@ void StaticBvh::draw_groups(size_t begin, size_t end, const gl::Flags& flags, St
             draw_group(group, flags, strip, view, gbuffer, programs);
 }
 
+SlopeUse StaticBvh::slope_use() const {
+    for (const Look* look : {&outside_, &inside_}) {
+        if (!look->prepared)
+            continue;
+        for (const bvh::DecalGroup& group : look->prepared->groups) {
+            if (group.needs.slopes)
+                return SlopeUse::widths;
+        }
+    }
+    return SlopeUse::none;
+}
+
 gl::Flags StaticBvh::flags_of(const bvh::DecalGroup& group) const {
     gl::Flags flags;
     const auto add_if = [&](bool wanted, const char* flag) {

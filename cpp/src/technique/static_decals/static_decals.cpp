@@ -223,6 +223,12 @@ void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::Program
     draw_full_screen({"IDS"}, gbuffer, programs);
 }
 
+SlopeUse StaticDecals::slope_use() const {
+    const bool is_corrected = any_look(
+        [](const PreparedDecals& look) { return (look.style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0; });
+    return is_corrected ? SlopeUse::widths : SlopeUse::none;
+}
+
 void StaticDecals::add_style_flags(gl::Flags& flags) const {
     if (prepared_->has_lines)
         flags.insert("LINES");

@@ -21,6 +21,7 @@ public:
     void upload(std::shared_ptr<const Prepared> prepared, std::shared_ptr<const Prepared> lens,
                 const TerrainView&, const MemoryAccount& memory) override;
     UpdateReport update(const View& view) override;
+    SlopeUse slope_use() const override;
     bool needs_depth(const View& view) const override { return view.antialias == Antialias::coverage; }
     void draw(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
     void draw_ids(const View& view, const GBufferView& gbuffer, gl::ProgramLibrary& programs) override;
