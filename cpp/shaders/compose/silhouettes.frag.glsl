@@ -93,8 +93,9 @@ void main() {
     mat2 foot = footprint(place, surface.xy, distance);
     mat2 footprints_of_map = sky ? mat2(0.0) : inverse(foot);
     float most = farthest;
+    bool at_border = false;
 #ifdef OVERLAY
-    bool at_border = is_at_border(pixel);
+    at_border = is_at_border(pixel);
     if (at_border) most = farthest_at_borders;
     bool is_small = max(length(foot[0]), length(foot[1])) > smallest_facets * cell_at(place, distance);
     if (at_border && is_small) most = min(most, farthest_among_small);
