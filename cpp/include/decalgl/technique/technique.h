@@ -186,8 +186,8 @@ struct UpdateReport {
 };
 
 // What of `Technique::draw` follows from the slope of the ground, and not from the place on the map alone: nothing, how
-// wide strokes are, or which strokes a pixel meets. Samples of a pixel with a bend then see the facets that they lie on, and
-// not those of samples beside them.
+// wide strokes are, or which strokes a pixel meets. With these, each sample of a pixel with a bend sees the facet that it lies
+// on, and not that of a sample beside it.
 enum class SlopeUse { none, widths, strokes };
 
 class Technique {

@@ -44,7 +44,7 @@ void LevelTextures::redraw_edited(Fineness& fineness, const PreparedDecals& befo
 
 // The coarsest one that the nearest pixel spans enough texels of.
 LevelTextures::Fineness* LevelTextures::fineness_for(const View& view, const PreparedDecals& look) {
-    if (view.antialias != Antialias::coverage || (look.style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0)
+    if (view.antialias != Antialias::coverage || look.has_slopes())
         return nullptr;  // levels know no slopes
     const double bucket = look.grid.bucket_size;
     if (view.widest_pixel < FEWEST_TEXELS * bucket / LEVEL_TEXELS)

@@ -53,6 +53,8 @@ public:
     bool needs_kinds() const {
         return !kinds.empty() && (has_clips || style_records.size() > 1 || largest_scale > 0);
     }
+    // Whether any width is corrected for slopes.
+    bool has_slopes() const { return (style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0; }
     uint32_t rank_of(uint32_t slot) const { return ranks.empty() ? slot : ranks[slot]; }
     // The words of a cell, to LIST_END or their end.
     Span<const uint32_t> list(uint32_t cell_entry) const;

@@ -224,9 +224,8 @@ void StaticDecals::draw_ids(const View&, const GBufferView& gbuffer, gl::Program
 }
 
 SlopeUse StaticDecals::slope_use() const {
-    const bool is_corrected = any_look(
-        [](const PreparedDecals& look) { return (look.style_flags & (STYLE_TANGENT | STYLE_THOENY)) != 0; });
-    return is_corrected ? SlopeUse::widths : SlopeUse::none;
+    return any_look([](const PreparedDecals& look) { return look.has_slopes(); }) ? SlopeUse::widths
+                                                                                  : SlopeUse::none;
 }
 
 void StaticDecals::add_style_flags(gl::Flags& flags) const {
